@@ -15,6 +15,7 @@ from .gripper import CarryRig
 from .modbus import ModbusRig
 from .nav2 import RoundRig, WaypointsRig
 from .opcua import OpcUaRig
+from .own_topics import TopicsRig
 from .rig import Rig
 from .s7 import S7Rig
 from .serial_arm import ServoRig
@@ -22,6 +23,7 @@ from .ur import UrRig
 from .vda5050 import AgvRig
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
+PLANTS = Path(__file__).parents[1] / "plants"
 
 
 def _shaker(example: PlantModel, *, side_by_side: bool = False) -> Rig:
@@ -37,6 +39,8 @@ RIGS: dict[str, tuple[Path | None, Callable[..., Rig]]] = {
     "opcua": (EXAMPLES / "plc_conveyor/opcua.yaml", OpcUaRig),
     "s7": (EXAMPLES / "plc_conveyor/s7.yaml", S7Rig),
     "ros2_control": (EXAMPLES / "ros2_control/plant.yaml", CarryRig),
+    "mqtt-ids": (PLANTS / "own_topics/ids.yaml", TopicsRig),
+    "mqtt-facts": (PLANTS / "own_topics/facts.yaml", TopicsRig),
     "navigate_to_pose": (EXAMPLES / "nav2/plant.yaml", RoundRig),
     "follow_waypoints": (EXAMPLES / "nav2/plant.yaml", WaypointsRig),
     "gcode-grbl": (EXAMPLES / "gantry/bench.yaml", GantryRig),

@@ -47,6 +47,10 @@ def _vehicle(message: Any) -> bool:
     return any(each["actionType"] in ("cancelOrder", "startPause") for each in actions)
 
 
+def _own_topics(message: Any) -> bool:
+    return bool(message.topic == "arm/stop")
+
+
 def _dobot(message: Any) -> bool:
     return "Stop()" in getattr(message, "text", "")
 
@@ -78,6 +82,10 @@ TRIED = {
     **{
         f"vda5050-{version}": Tried(waits_s=(stops.AGAIN_S, SILENT_S), has_bytes=False, is_stop=_vehicle)
         for version in ("2.0", "2.1", "3.0")
+    },
+    **{
+        f"mqtt-{level}": Tried(waits_s=(3.0,), has_bytes=False, is_stop=_own_topics)
+        for level in ("ids", "facts")
     },
     "dobot": Tried(waits_s=(FRAMES_S, REPLY_S), is_stop=_dobot),
     "ur": Tried(waits_s=(FRAMES_S, REPLY_S), is_stop=_ur),
