@@ -11,6 +11,7 @@ from arboleda.kinds import rules
 from arboleda.kinds.declared import DeviceKind, DeviceVerb, Effect, FactType, Slot
 from arboleda.kinds.rules import OF_OTHER, SLOT
 from arboleda.model.facts import Facts, Value
+from arboleda.model.messages import BUILT_IN
 from arboleda.recipes.handles import DeviceHandle
 from arboleda.wire import mqtt_limits
 
@@ -27,7 +28,7 @@ WITH_LIMITS = "; a number with limits is of a kind in Python: Number(1, 60)"
 OF_STEPS = tuple(
     name for name, _ in inspect.getmembers(DeviceHandle, inspect.isfunction) if not name.startswith("_")
 )
-OF_FACTS = ("self", "at_most_s")  # parameters of these steps beside facts
+OF_FACTS = ("self", "at_most_s", *sorted(BUILT_IN))  # parameters of these steps beside facts; facts of robots
 
 
 def kinds(document: Document) -> dict[str, DeviceKind]:
