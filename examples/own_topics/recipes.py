@@ -29,14 +29,18 @@ def measure(cell):
 def enter(cell):
     """Light the room for a while, if its door is open."""
     door, lamp = cell.devices("door", "lamp")
-    return work(door.says(door="open"), lamp.turn(to="on"), cell.wait(2), lamp.turn(to="off"))
+    return work(
+        door.becomes(door="open", at_most_s=10), lamp.turn(to="on"), cell.wait(2), lamp.turn(to="off")
+    )
 
 
 @recipe("warm")
 def warm(cell):
     """Heat for a while, if a thermometer says that it is cold; the heater itself tells nothing."""
     heater, meter = cell.devices("heater", "meter")
-    return work(meter.says(celsius="< 20"), heater.turn(to="on"), cell.wait(5), heater.turn(to="off"))
+    return work(
+        meter.becomes(celsius="< 20", at_most_s=10), heater.turn(to="on"), cell.wait(5), heater.turn(to="off")
+    )
 
 
 @recipe("signal")
@@ -71,7 +75,9 @@ def print_part(cell, part=Choice("cube", "gear")):
 def load(cell):
     """Show for a while that the cart may be loaded, if it stands."""
     cart, lamp = cell.devices("cart", "lamp")
-    return work(cart.says(driving=False), lamp.turn(to="on"), cell.wait(2), lamp.turn(to="off"))
+    return work(
+        cart.becomes(driving=False, at_most_s=10), lamp.turn(to="on"), cell.wait(2), lamp.turn(to="off")
+    )
 
 
 @recipe("dose")

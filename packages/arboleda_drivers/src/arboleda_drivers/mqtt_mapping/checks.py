@@ -120,7 +120,9 @@ def _sent(place: Place, sent: Sent, parameters: list[str]) -> Iterator[Problem]:
 def _ids(settings: Keys, verb: DeviceVerb) -> Iterator[Problem]:
     """A problem where an answer has to name a command that was sent without its id."""
     named = any({ID, NUMBER} & sent.names for sent in settings.verbs[verb.name].send)
-    if _names_command(settings, verb) and not named:
+    failed = settings.fails(verb.name)
+    is_named = _names_command(settings, verb) or (failed is not None and bool(failed.id))
+    if is_named and not named:
         yield ("verbs", verb.name, "send"), "its end names the command; send it with {id} or {number}"
 
 

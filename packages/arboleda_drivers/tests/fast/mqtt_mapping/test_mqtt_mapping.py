@@ -16,7 +16,16 @@ from arboleda_drivers.mqtt_mapping.listen.proposal import Listening
 from arboleda_drivers.mqtt_mapping.sent import Sent
 
 from .mqtt_rig import plant_of
-from .test_mqtt_mapping_machine import ARM, ARM_MAPPING, COVER, COVER_MAPPING, PLUG, PLUG_MAPPING
+from .test_mqtt_mapping_machine import (
+    ARM,
+    ARM_MAPPING,
+    COVER,
+    COVER_MAPPING,
+    OVEN,
+    OVEN_MAPPING,
+    PLUG,
+    PLUG_MAPPING,
+)
 
 BOOL = FactType(type=bool, words=(), first=False)
 ONLINE = 'online: {hear: "tele/{device}/LWT", equals: Online}\n'
@@ -50,6 +59,13 @@ STATE = "state: {hear: door/state, words: {stopped: [open, closed], moving: [ope
             ARM_MAPPING,
             'seq: "{number}", act: turn',
             "act: turn",
+            "its end names the command; send it with",
+        ),
+        (
+            OVEN,
+            OVEN_MAPPING,
+            "done:",
+            "failed: {hear: oven/error, id: seq}\ndone:",
             "its end names the command; send it with",
         ),
         (ARM, ARM_MAPPING, "    id: seq\n", "", "its answer has to name the command: say where, id: PATH"),
