@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import islice
 from typing import Any
 
 from arboleda.drivers import Device, DeviceVerb, Effect, Evidence, OnStop, Robot, Value, among
+from arboleda_drivers.believed import LEVELS, examples, headline
 from arboleda_drivers.meaning import as_text, is_range
 from arboleda_drivers.plc import checks
 from arboleda_drivers.plc.checks import Place, Problem
@@ -15,14 +15,9 @@ from .heard import Heard
 from .keys import Keys
 from .sent import DEVICE, ID, NUMBER, OURS, Sent
 
-EXAMPLES = 4  # of a verb, that are shown
 WORKS = (Effect.MOTION, Effect.PROCESS)
-BELIEVED = {
-    Evidence.IDS: "it says which command it has done",
-    Evidence.JOINTS: "it is done once the facts say so; an order that came twice, or late, is not noticed",
-    Evidence.STATE: "only that it works and stops is known; what it did is not checked",
-}
 NOT_CHECKED = "what becomes of it is not checked; let a sensor or a person say it"
+ONLY_TELLS = "nothing is sent to it; what it tells is known"
 
 
 def evidence(settings: Keys, device: Device) -> Evidence:
@@ -66,7 +61,7 @@ def problems(settings: Keys, device: Robot) -> Iterator[Problem]:
         level = evidence(settings, device)
         yield (
             (),
-            f"{device.name} has evidence: {device.evidence.value}, and this mapping proves {_word(level)}",
+            f"{device.name} has evidence: {device.evidence.value}, and this mapping proves {LEVELS[level]}",
         )
 
 
@@ -86,10 +81,6 @@ def _levels(settings: Keys, device: Device) -> tuple[Evidence, ...]:
     """The levels that may be said: the one that the mapping gives, and those below."""
     order = (Evidence.IDS, Evidence.JOINTS, Evidence.STATE)
     return order[order.index(evidence(settings, device)) :]
-
-
-def _word(level: Evidence) -> str:
-    return "facts" if level is Evidence.JOINTS else level.value
 
 
 def _verb(settings: Keys, verb: DeviceVerb) -> Iterator[Problem]:
@@ -156,15 +147,11 @@ def _ends(settings: Keys, works: list[DeviceVerb]) -> bool:
 
 def shown(settings: Keys, device: Device) -> Iterator[str]:
     """Lines for a person: what is sent for each verb, and what is believed."""
-    level = evidence(settings, device)
-    believed = NOT_CHECKED if settings.unheard else BELIEVED[level]
-    if not settings.verbs:
-        believed = "nothing is sent to it; what it tells is known"
-    yield f"{device.name}: evidence {_word(level)}: {believed}"
+    believed = NOT_CHECKED if settings.unheard else "" if settings.verbs else ONLY_TELLS
+    yield headline(device.name, evidence(settings, device), believed)
     ours: dict[str, Value] = {DEVICE: settings.name_of(device.name), ID: f"{device.name}-1", NUMBER: 1}
     for name, mapped in settings.verbs.items():
-        for values in islice(device.kind.verbs[name].samples, EXAMPLES):
-            given = " ".join([name, *(str(value) for _, value in values)])
+        for given, values in examples(device.kind.verbs[name]):
             for sent in mapped.send:
                 message = sent.filled({**dict(values), **ours})
                 yield f"  {given}: {message.topic} {message.payload.decode()}".rstrip()

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from itertools import islice
 
-from arboleda.drivers import Device, DeviceVerb, DriverError, Effect, Evidence, OnStop, Robot, among
+from arboleda.drivers import Device, DeviceVerb, DriverError, Effect, Evidence, OnStop, Robot, Value, among
+from arboleda_drivers.believed import LEVELS, examples, headline
 from arboleda_drivers.plc import checks
 from arboleda_drivers.plc.checks import Place, Problem
 
@@ -17,7 +18,6 @@ from .types import HEARD, heard_in, message_of, misspelt
 
 WORKS = (Effect.MOTION, Effect.PROCESS)
 SAMPLES = 64  # of a verb's values
-WORDS = {Evidence.IDS: "ids", Evidence.JOINTS: "facts", Evidence.STATE: "state"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,7 +33,7 @@ class Settings(Keys):
         if not isinstance(device, Device):
             yield from checks.undeclared(device)
             return
-        level, proven = WORDS[device.evidence], WORDS[self.evidence_of(device)]
+        level, proven = LEVELS[device.evidence], LEVELS[self.evidence_of(device)]
         if level == "ids" != proven:
             yield (), f"{device.name} has evidence: {level}, and this mapping proves {proven}"
         yield from checks.facts(self.facts, device, "say where it is heard, {topic: ..., field: ...}")
@@ -47,6 +47,27 @@ class Settings(Keys):
                 yield from _verb(("verbs", name), verb, device.kind.verbs[name])
         yield from _published(self, device)
         yield from _stops(self, device)
+
+    def shown(self, device: Robot) -> Iterator[str]:
+        """Lines for a person: what is sent, and what is believed."""
+        if not isinstance(device, Device):
+            return
+        yield headline(device.name, self.evidence_of(device))
+        for name, verb in self.verbs.items():
+            for given, values in examples(device.kind.verbs[name]):
+                yield f"  {given}: {_shown(self, verb, dict(values))}"
+        for name, source in self.facts.items():
+            if source.topic:
+                yield f"  {name}: {self.full(source.topic)} {source.field}"
+        if self.halt is not None:
+            yield f"  halt: {_shown(self, self.halt, {})}"
+        elif not any(verb.action for verb in self.verbs.values()):
+            yield f"  stop reaches nothing of {device.name}"
+
+
+def _shown(keys: Keys, call: Call, values: dict[str, Value]) -> str:
+    fields = ", ".join(f"{path}: {value}" for path, value in call.filled(values).items())
+    return f"{call.kind} {keys.full(call.name)} {{{fields}}}"
 
 
 def _published_works(keys: Keys, device: Robot) -> Iterator[DeviceVerb]:

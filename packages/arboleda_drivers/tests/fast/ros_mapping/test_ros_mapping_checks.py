@@ -11,6 +11,7 @@ from tests.packages import ROOT
 
 from arboleda.drivers import DriverError, Evidence, OnStop
 from arboleda.model.errors import ConfigError
+from arboleda.plant_file import drivers
 from arboleda.plant_file.loader import load
 from arboleda_drivers.ros_mapping.keys import Call, Qos, Verb
 from arboleda_drivers.ros_mapping.paths import steps, value_at
@@ -154,3 +155,10 @@ def test_a_path_leads_into_lists_and_ends_where_they_do() -> None:
 def test_the_example_is_good() -> None:
     turtle = load(ROOT / "examples/turtle/pond.yaml").robots["turtle"]
     assert turtle.driver is not None and turtle.driver.name == "ros" and turtle.evidence is Evidence.IDS
+
+
+def test_what_passes_is_shown_with_examples() -> None:
+    lines = [*drivers.messages_of(load(ROOT / "examples/turtle/pond.yaml"))]
+    assert lines[0] == "turtle: evidence ids: it says which command it has done"
+    assert "  turn 1.5: action /turtle1/rotate_absolute {theta: 1.5}" in lines
+    assert lines[-1] == "  heading: /turtle1/pose theta"
