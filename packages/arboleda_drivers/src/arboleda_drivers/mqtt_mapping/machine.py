@@ -142,11 +142,16 @@ class MappedDevice:
             self._receipts["accepted"] = id
         failed = settings.fails(verb)
         if failed is not None and self._says(failed, message, order):
-            self._end(failed=id, failure=plain(failed.reason(message.payload) or "failed", LONGEST_WORD))
+            self._fail(id, verb, plain(failed.reason(message.payload) or "failed", LONGEST_WORD))
         elif order.command.definition.effect is Effect.QUERY:
             self._see_answer(message, order)
         elif self._says(settings.ends(verb), message, order):
             self._end(accepted=id, done=id)
+
+    def _fail(self, id: str, verb: str, why: str) -> None:
+        """End the order as failed; as refused where it says what it accepts, and did not accept it."""
+        is_refused = self._settings.accepts(verb) is not None and self._receipts.get("accepted") != id
+        self._end(**({"rejected": id, "refusal": why} if is_refused else {"failed": id, "failure": why}))
 
     def _says(self, says: Says | None, message: Delivery, order: Order) -> bool:
         return (

@@ -166,10 +166,17 @@ def test_an_end_of_another_order_is_none_of_this(arm: Rig) -> None:
     assert arm.report.done == "c1"
 
 
-def test_a_failure_has_the_device_s_reason(arm: Rig) -> None:
+def test_a_failure_before_it_was_accepted_is_a_refusal(arm: Rig) -> None:
     arm.faults.switch("refuse", on=True)
     arm.give("turn", to=90)
-    assert (arm.report.failed, arm.report.failure) == ("c1", "refused")
+    assert (arm.report.rejected, arm.report.refusal) == ("c1", "refused")
+
+
+def test_what_was_accepted_before_has_failed(arm: Rig) -> None:
+    arm.faults.switch("stick", on=True)
+    arm.give("turn", to=90)
+    arm.tell("arm/ack", '{"seq": 1, "is": "failed", "text": "jam"}')
+    assert (arm.report.accepted, arm.report.failed, arm.report.failure) == ("c1", "c1", "jam")
 
 
 def test_an_answer_names_its_question(arm: Rig) -> None:

@@ -11,6 +11,7 @@ from ..gcode import bench as gcode
 from ..gripper_command import bench as gripper_command
 from ..joint_trajectory import bench as joint_trajectory
 from ..modbus import bench as modbus
+from ..mqtt_mapping import bench as mqtt_mapping
 from ..nav2 import bench as nav2
 from ..opcua import bench as opcua
 from ..pylabrobot import bench as pylabrobot
@@ -26,6 +27,7 @@ BENCHES: dict[str, Bench] = {
     "ros": ros.BENCH,
     "line_tcp": line_tcp.BENCH,
     "modbus": modbus.BENCH,
+    "mqtt_mapping": mqtt_mapping.BENCH,
     "opcua": opcua.BENCH,
     "pylabrobot": pylabrobot.BENCH,
     "pylabrobot_side_by_side": pylabrobot.SIDE_BY_SIDE,
