@@ -89,6 +89,24 @@ def carry(cell):
     take, put = arm.visit("in", arm.grip()), arm.visit("bin", arm.let_go())
     return work(take, put, arm.home(), bed.clamp(on=True), cell.wait(5), bed.clamp(on=False))
 """
+PLUG = """
+name: plug
+uses: [recipes.py]
+kinds:
+  plug:
+    facts: {power: [off, on]}
+    verbs: {turn: {effect: switch, with: {to: [off, on]}, sets: {power: $to}, takes_s: 0.2, at_most_s: 3}}
+cells:
+  a:
+    devices: {plug: {kind: plug, evidence: facts}}
+"""
+LIGHT = """
+from arboleda.recipes import recipe, work
+
+@recipe("light")
+def light(cell):
+    return work(cell.device("plug").turn(to="on"))
+"""
 EACH = 40  # of so many portions of a proof one is run
 FAULTS = {
     "a gripper closes late, where the recovery has carried it": Fault(
@@ -200,6 +218,14 @@ def test_a_task_may_open_a_shared_hand_in_the_step_in_which_an_operator_has_anot
     watched.world.at(opened_at, lambda _: watched.world.request_verb(Verb.RELEASE, "b"))
     assert opening(watched.world) == opened_at
     watched.world.advance(5.0)
+
+
+def test_a_boot_that_no_report_tells_excuses_a_switch_that_is_already_said_to_be_so(tmp_path: Path) -> None:
+    model = written(tmp_path, PLUG, LIGHT)
+    people = [{"at": 1.0, "task": "a light"}, {"at": 2.0, "task": "a light"}]
+    script = script_from(model, {"people": people, "seconds": 10})
+    plan = {0: (Fault(kind="forgets", at=2.2, target="plug"),)}
+    assert Simulation(model, 1, lambda minute: plan.get(minute, ()), script=script).run().broken is None
 
 
 def opening(world: World) -> float:

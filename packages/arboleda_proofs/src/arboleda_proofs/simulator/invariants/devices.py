@@ -13,6 +13,7 @@ from arboleda.wire.hop import shown
 from ..recorded.commands import SentCommand
 from ..truth.ended_commands import EndedCommand
 from ..truth.robot import RobotTruth
+from ..truth.robots import LATE_BOOT_S
 from ..truth.truth import Truth
 from .invariant import Look, Trigger, invariant
 
@@ -47,13 +48,18 @@ def _unprovable(truth: Truth, booked: EndedCommand, robot: RobotTruth) -> bool:
     def lies(what: str) -> bool:
         return truth.deceived_since(robot.robot.mqtt, what, booked.sent_at)
 
-    if robot.blind or robot.put_right_at >= booked.sent_at:
+    if robot.blind or robot.put_right_at >= booked.sent_at or _booted_unheard(robot, booked.sent_at):
         return True
     if not booked.entry.is_work and not _tells_switches(robot.robot):
         return True
     if robot.robot.evidence is Evidence.IDS and booked.entry.is_work:
         return lies("done") and lies(robot.PLACE)
     return booked.late or lies(robot.PLACE) or lies("effector") or lies("state")
+
+
+def _booted_unheard(robot: RobotTruth, at: float) -> bool:
+    """True for a device that booted shortly before, where boots have no number: nobody hears of them."""
+    return robot.robot.evidence is not Evidence.IDS and at < robot.booted_us / 1e6 + LATE_BOOT_S
 
 
 def _may_have_failed_unseen(truth: Truth, booked: EndedCommand, robot: Robot) -> bool:
@@ -88,6 +94,8 @@ def what_a_task_left_is_so(look: Look) -> Iterator[str]:
             for name, value in booked.command.sets:
                 body = truth.robot(robot.name)
                 since = max(body.booted_us / 1e6, body.put_right_at)
+                if _booted_unheard(body, booked.sent_at):
+                    continue
                 lies = any(truth.deceived_since(robot.mqtt, what, began) for what in (body.PLACE, "effector"))
                 if body.body.true_facts.get(name) != value and since < booked.sent_at and not lies:
                     yield f"{task} is called done, and {name} of {robot.name} is not {value}"
