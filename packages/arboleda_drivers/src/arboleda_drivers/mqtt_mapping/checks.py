@@ -11,7 +11,7 @@ from arboleda_drivers.meaning import as_text, is_range
 from arboleda_drivers.plc import checks
 from arboleda_drivers.plc.checks import Place, Problem
 
-from .heard import Heard
+from .heard import Heard, Says
 from .keys import Keys
 from .sent import DEVICE, ID, NUMBER, OURS, Sent
 
@@ -157,8 +157,24 @@ def shown(settings: Keys, device: Device) -> Iterator[str]:
                 yield f"  {given}: {message.topic} {message.payload.decode()}".rstrip()
     for name, heard in settings.facts.items():
         yield f"  {name}: {heard.named(settings.name_of(device.name))} {_what(heard)}".rstrip()
+    name = settings.name_of(device.name)
+    for key in ("online", "accepted", "done", "failed"):
+        if (says := getattr(settings, key)) is not None:
+            yield f"  {key}: {says.named(name)} {_condition(says)}".rstrip()
+    if settings.state is not None:
+        yield f"  state: {settings.state.named(name)} {_what(settings.state)}".rstrip()
+    for key in ("halt", "latch", "clear"):
+        for sent in getattr(settings, key):
+            message = sent.filled(ours)
+            yield f"  {key}: {message.topic} {message.payload.decode()}".rstrip()
     if settings.verbs and not settings.halt:
         yield f"  stop reaches nothing of {device.name}"
+
+
+def _condition(says: Says) -> str:
+    meant = " or ".join(map(as_text, says.values))
+    named = f"with the command in {says.id}" if says.id else ""
+    return " ".join(each for each in (says.path or says.pattern, meant, named) if each)
 
 
 def _what(heard: Heard) -> str:

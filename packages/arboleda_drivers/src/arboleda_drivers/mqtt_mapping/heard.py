@@ -9,9 +9,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
-from arboleda.drivers import DriverError, FactType, Value
+from arboleda.drivers import DriverError, FactType, Value, plain
 from arboleda_drivers.meaning import SCALARS, Meaning, UnreadableValue, is_meant, is_range
 
+LONGEST_SHOWN = 80  # characters of a message in a sentence
 LONGEST = 65536  # bytes of a message that is read
 PLACE = re.compile(r"\.?([^.\[\]]+)|\[(\d+)\]")
 NAME = re.compile(r"\{(\w+)\}")
@@ -159,6 +160,14 @@ def places(path: str) -> tuple[str | int, ...]:
         found.append(int(match[2]) if match[2] is not None else match[1])
         end = match.end()
     return tuple(found)
+
+
+def lack(source: Source, payload: bytes) -> str:
+    """The sentence that a message does not have the value of a source, and what it has."""
+    where = source.path or source.pattern
+    body = parsed(payload) if source.path else None
+    has = ", ".join(map(str, body)) if isinstance(body, Mapping) else decoded(payload).strip()
+    return f"it has no {where}; it has {plain(has, LONGEST_SHOWN)}"
 
 
 def is_filter(topic: str) -> bool:

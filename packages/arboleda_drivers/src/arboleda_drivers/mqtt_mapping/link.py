@@ -23,6 +23,7 @@ class Link:
         self._settings, self._name = settings, name
         self.broker = False
         self._is_there = settings.online is None  # by its last will
+        self._said: str | None = None  # of its being there
         self._heard_at = -math.inf  # any message that was not retained
         self._is_silent = False
         self._twins_until = -math.inf
@@ -32,7 +33,7 @@ class Link:
     def connected(self, *, up: bool) -> None:
         """Note that the broker is connected, or is lost."""
         self.broker, self._is_there = up, self._settings.online is None
-        self._heard_at, self._is_silent = -math.inf, False
+        self._heard_at, self._is_silent, self._said = -math.inf, False, None
 
     def trouble(self, now: float) -> str | None:
         """The reason why there is no link, in a sentence; None if there is one."""
@@ -40,7 +41,10 @@ class Link:
         if not self.broker:
             return f"the MQTT broker at {self._settings.broker} is not there"
         if online is not None and not self._is_there:
-            return f"{self._name} has not said on {online.named(self._name)} that it is there"
+            where, meant = online.named(self._name), " or ".join(map(as_text, online.values))
+            if self._said is None or not meant:
+                return f"{self._name} has not said on {where} that it is there"
+            return f"{self._name} has said {self._said} on {where}; it is there while it says {meant}"
         if now < self._twins_until:
             return (
                 f"two devices call themselves {self._name}, as their boots alternate; give one another name"
@@ -75,6 +79,8 @@ class Link:
         if self.is_on(online, message):
             assert online is not None
             self._is_there = online.is_said(message.payload)
+            raw = online.raw(message.payload)
+            self._said = plain("nothing" if raw is NOTHING else as_text(raw), LONGEST)
         return (was and not self._is_there) or self._see_boot(now, message)
 
     def _see_boot(self, now: float, message: Delivery) -> bool:

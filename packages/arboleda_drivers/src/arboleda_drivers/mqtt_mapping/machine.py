@@ -119,11 +119,13 @@ class MappedDevice:
         try:
             if self._link.see(now, message):
                 self._forget()
-            self._showing.see(now, message)
+            wrong = self._showing.see(now, message)
             if not message.retain:
                 self._see_order(message)
         except UnreadableValue as error:
-            out.append(LogLine(text=f"{self._device.name}: of a message on {message.topic}: {error}"))
+            wrong = [str(error)]
+        for each in wrong:
+            out.append(LogLine(text=f"{self._device.name}: of a message on {message.topic}: {each}"))
         return [*out, *self._told(now)]
 
     def _forget(self) -> None:

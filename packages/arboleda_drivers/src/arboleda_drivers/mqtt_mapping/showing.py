@@ -8,7 +8,7 @@ from arboleda.drivers import DeviceKind, Facts, MotionState, Value
 from arboleda.wire.transport import Delivery
 from arboleda_drivers.meaning import UnreadableValue, as_text
 
-from .heard import NOTHING, Heard
+from .heard import NOTHING, Heard, lack
 from .keys import Keys
 from .link import Link
 
@@ -57,7 +57,7 @@ class Showing:
 
     def forget(self) -> None:
         """Forget the state, which may have changed meanwhile."""
-        self._state, self._was_told = None, False
+        self._state, self._was_told, self._ordered_at = None, False, -math.inf
 
     def order(self, now: float) -> None:
         """Note that it was ordered to do something."""
@@ -78,17 +78,35 @@ class Showing:
             return MotionState.MOVING
         return MotionState.STOPPED if now >= self._ordered_at + still.for_s else None
 
-    def see(self, now: float, message: Delivery) -> None:
-        """Take a message; raises UnreadableValue where it tells what has no meaning."""
+    def see(self, now: float, message: Delivery) -> list[str]:
+        """Take a message; returns sentences on what it tells that has no meaning, and on what it lacks."""
         if message.retain and self._settings.online is None:
-            return
-        for name, heard in self._settings.facts.items():
-            if self._link.is_on(heard, message) and (raw := heard.raw(message.payload)) is not NOTHING:
-                self._see_fact(now, name, heard, raw)
-                if not message.retain:
-                    self._since.add(name)
-        if self._link.is_on(self._settings.state, message) and not (message.retain and self._ordered_at > 0):
-            self._see_state(message)
+            return []
+        facts = (
+            (name, heard) for name, heard in self._settings.facts.items() if self._link.is_on(heard, message)
+        )
+        found = [self._read(now, message, name, heard) for name, heard in facts]
+        state = self._settings.state
+        if self._link.is_on(state, message) and not (message.retain and self._ordered_at > -math.inf):
+            assert state is not None
+            found.append(self._read(now, message, "", state))
+        return [each for each in found if each]
+
+    def _read(self, now: float, message: Delivery, name: str, heard: Heard) -> str:
+        """Take a fact of a message, the state without a name; returns why that is impossible, else ""."""
+        try:
+            if (raw := heard.raw(message.payload)) is NOTHING:
+                is_known = name in self._facts if name else self._was_told
+                return "" if is_known else lack(heard, message.payload)
+            if not name:
+                self._see_state(heard, raw)
+                return ""
+            self._see_fact(now, name, heard, raw)
+        except UnreadableValue as error:
+            return str(error)
+        if not message.retain:
+            self._since.add(name)
+        return ""
 
     def _see_fact(self, now: float, name: str, heard: Heard, raw: object) -> None:
         before = self._facts.pop(name, None)
@@ -99,11 +117,7 @@ class Showing:
         if still is not None and name in still.facts and before not in (None, value):
             self._changed_at = now
 
-    def _see_state(self, message: Delivery) -> None:
-        state = self._settings.state
-        assert state is not None
-        if (raw := state.raw(message.payload)) is NOTHING:
-            return
+    def _see_state(self, state: Heard, raw: object) -> None:
         word, self._was_told = state.word(raw), True
         self._state = STATES.get(word or "")
         if self._state is None:

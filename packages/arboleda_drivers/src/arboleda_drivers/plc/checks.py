@@ -77,11 +77,11 @@ def ways(device: Device, form: str, hint: str, *, state: bool, halt: bool) -> It
 
 def states(words: Collection[str]) -> Iterator[Problem]:
     """Problems of the words for states: each must be a state, and "stopped" and "moving" are needed."""
-    for word in words:
-        if word not in STATES:
-            yield ("state", "words", word), f"there is no state {word}; {among(word, STATES)}"
+    unknown = [word for word in words if word not in STATES]
+    for word in unknown:
+        yield ("state", "words", word), f"there is no state {word}; {among(word, STATES)}"
     missing = [word for word in ("stopped", "moving") if word not in words]
-    if missing:
+    if missing and not unknown:  # else one of those is meant
         yield ("state",), f"has no number for {' and '.join(missing)}: words: {{stopped: 0, moving: 1}}"
 
 

@@ -118,7 +118,9 @@ def test_an_order_is_neither_retained_nor_sent_twice_by_default(plug: Rig) -> No
 
 def test_a_last_will_is_the_end_of_the_link(plug: Rig) -> None:
     plug.tell("tele/thing/LWT", "Offline")
-    assert str(plug.report.lost) == "thing has not said on tele/thing/LWT that it is there"
+    assert (
+        str(plug.report.lost) == "thing has said Offline on tele/thing/LWT; it is there while it says Online"
+    )
     assert plug.refusal("turn", to="on") == str(plug.report.lost)
     plug.tell("tele/thing/LWT", "Online")
     assert plug.report.state is MotionState.STOPPED
@@ -266,6 +268,27 @@ def test_a_device_moves_while_its_facts_change(tmp_path: Path) -> None:
     rig.faults.switch("mute", on=True)
     rig.run(1.2)
     assert rig.report.state is MotionState.STOPPED
+
+
+def test_a_retained_state_counts_again_after_the_broker_was_gone(cover: Rig) -> None:
+    cover.give("move", to="open")
+    cover.run(3.0)
+    for up in (False, True):
+        cover.driver.connected(cover.now, up=up)
+    cover.tell("door/status", "online", retain=True)
+    assert "has not told its state yet" in str(cover.report.lost)
+    cover.tell("door/state", "open", retain=True)
+    assert cover.report.state is MotionState.STOPPED
+
+
+def test_a_message_without_the_path_of_a_fact_that_was_never_heard_is_named(tmp_path: Path) -> None:
+    mapping = PLUG_MAPPING.replace('stat/{device}/POWER", words', 'stat/{device}/POWER", path: a.b, words')
+    rig = Rig(*device_in(plant_of(tmp_path, PLUG, mapping)))
+    rig.faults.switch("mute", on=True)
+    rig.driver = type(rig.driver)(rig.device, rig.settings)
+    rig.driver.connected(rig.now, up=True)
+    rig.tell("stat/thing/POWER", '{"c": 1, "d": 2}')
+    assert rig.log[-1] == "thing: of a message on stat/thing/POWER: it has no a.b; it has c, d"
 
 
 def test_what_is_not_known_is_asked(tmp_path: Path) -> None:

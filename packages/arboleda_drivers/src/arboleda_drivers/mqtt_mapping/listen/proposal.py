@@ -13,7 +13,7 @@ from arboleda_drivers.meaning import SCALARS, UnreadableValue, as_text, is_numbe
 from arboleda_drivers.mqtt_mapping.heard import decoded
 
 MOST_WORDS = 8  # that a fact may have; more are any text
-PRESENCE = re.compile(r"lwt|availab|online|status|connection", re.IGNORECASE)
+PRESENCE = re.compile(r"lwt|availab|online|status|connect|alive|presence", re.IGNORECASE)
 THERE = ("online", "Online", "ONLINE", "connected", "true", "1")
 LONGEST_SHOWN = 48  # characters of a value that are shown
 
@@ -89,7 +89,8 @@ class Listening:
         for (topic, path), seen in self.places.items():
             if _is_there(topic, seen):
                 at = f", path: {_quoted(path)}" if path else ""
-                yield f"    online: {{hear: {_quoted(topic)}{at}, equals: {_quoted(as_text(seen.last))}}}"
+                equals = _quoted(_says_there(seen) or "")
+                yield f"    online: {{hear: {_quoted(topic)}{at}, equals: {equals}}}"
                 return
         yield "    silent_after_s: 30  # nothing was heard that says whether it is there"
 
@@ -120,7 +121,12 @@ def _inside(path: str, body: object) -> Iterator[tuple[str, object]]:
 
 def _is_there(topic: str, seen: Seen) -> bool:
     """True where a device seems to say that it is there."""
-    return bool(PRESENCE.search(topic)) and seen.retained and as_text(seen.last) in THERE
+    return bool(PRESENCE.search(topic)) and seen.retained and _says_there(seen) is not None
+
+
+def _says_there(seen: Seen) -> str | None:
+    """The word by which it says that it is there; None for none."""
+    return next((word for word in map(as_text, seen.values) if word in THERE), None)
 
 
 def _names(places: Mapping[tuple[str, str], Seen]) -> dict[tuple[str, str], str]:

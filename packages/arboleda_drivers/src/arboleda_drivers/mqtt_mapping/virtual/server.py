@@ -12,12 +12,14 @@ from arboleda.adapters.broker import EmbeddedBroker
 from arboleda.adapters.broker_login import address, login
 from arboleda.adapters.mqtt import MqttClient, NotConnected
 from arboleda.drivers import Device, DriverError, Robot
+from arboleda.extension import Phrase, StartError, say
 from arboleda.wire.transport import Connection, Delivery, Publication
 from arboleda_drivers.mqtt_mapping.heard import matches
 from arboleda_drivers.mqtt_mapping.settings import Settings
 
 from .machine import VirtualMapped
 
+TAKEN = Phrase("cli.virtual.taken", "{why} Where that is the broker, say --broker-is-there.")
 LONGEST_WAIT_S = 0.1  # until a fault that was switched is noticed
 
 
@@ -102,7 +104,10 @@ class Server:
 
     def start(self) -> None:
         if self._own is not None:
-            self._own.start()
+            try:
+                self._own.start()
+            except StartError as error:
+                raise StartError(say(TAKEN(why=str(error)))) from error
         self._thread.start()
 
     def stop(self) -> None:
