@@ -38,6 +38,8 @@ VEHICLE = HERE.with_name("vda5050") / "virtual_agv.js"
 NODE = PREFIX / "npm/node_modules"
 NO_WORD = {"refusal": 0}  # of a device that refuses nothing
 TCP_FORMS = tuple(word for word in FORMS if word != "echo")  # which is of two wires, and these are TCP
+WRITTEN_AT_ONCE = tuple(word for word in TCP_FORMS if word != "baud_9600")
+"""Those of a driver whose `send` waits for no answer: a stop waits for what was told before."""
 STREAM_FORMS = ("slow", "jitter", "late_once", "cut", "joined", "half_open", "reset")
 """Those of a stream of which nothing is lost; at 9,600 baud a stop waits for what was told before."""
 
@@ -191,8 +193,15 @@ BENCHES: dict[str, Bench] = {
         play=_node_opcua,
         needs=("node", "asyncua"),
         installed=NODE / "node-opcua-server",
+        forms=WRITTEN_AT_ONCE,
     ),
-    "open62541": Bench(driver="opcua.adapter:OpcUa", play=_open62541, needs=("asyncua",), installed=O6),
+    "open62541": Bench(
+        driver="opcua.adapter:OpcUa",
+        play=_open62541,
+        needs=("asyncua",),
+        installed=O6,
+        forms=WRITTEN_AT_ONCE,
+    ),
     "vda_5050_lib": Bench(
         driver="vda5050.adapter:Vda5050",
         play=_vehicle,
