@@ -10,7 +10,8 @@ from arboleda.model.commands import Command, Stop
 from arboleda.model.messages import Reason
 from arboleda.model.plant_model import PlantModel, Robot
 from arboleda.wire.transport import Delivery, Publication
-from arboleda_drivers.mqtt_mapping.machine import LogLine, MappedDevice, Message
+from arboleda_drivers.connections.link import LogLine
+from arboleda_drivers.mqtt_mapping.machine import MappedDevice, Message
 from arboleda_drivers.mqtt_mapping.settings import Settings
 from arboleda_drivers.mqtt_mapping.virtual.machine import FAULTS, VirtualMapped
 from arboleda_lines.line import Line

@@ -13,7 +13,8 @@ from arboleda.drivers import NotSent
 from arboleda.model.commands import Command
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Robot
-from arboleda_drivers.vda5050.machine import LogLine, Message, Publish, Vehicle
+from arboleda_drivers.connections.link import LogLine
+from arboleda_drivers.vda5050.machine import Message, Publish, Vehicle
 from arboleda_drivers.vda5050.messages import Headers, from_bytes, to_bytes
 from arboleda_drivers.vda5050.settings import Settings
 from arboleda_drivers.vda5050.virtual.machine import (

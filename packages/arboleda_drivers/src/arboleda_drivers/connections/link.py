@@ -45,3 +45,10 @@ class CommandNotSent:
     """Message: the command that the plant gave cannot leave."""
 
     why: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class LogLine:
+    """Message: a sentence for the log."""
+
+    text: str

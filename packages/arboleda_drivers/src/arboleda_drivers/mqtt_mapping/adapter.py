@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from arboleda.drivers import Command, NotSent, Report, Robot, driver
+from arboleda.drivers import Command, NotSent, Report, Robot, Stop, driver
 from arboleda.wire.transport import Delivery, Publication
 from arboleda_drivers.connections.device_feed import taking
 from arboleda_drivers.connections.mqtt_driver import MqttDriver
@@ -51,16 +51,16 @@ class Mqtt(MqttDriver):
         return min(machine.next_deadline for machine in self._devices.values()) - now
 
     def give(self, command: Command) -> None:
-        machine = self._devices[command.robot]
-        sent = False
+        machine, has_left = self._devices[command.robot], False
         for message in machine.command(self.clock(), command):
             try:
                 self._do(message)
             except NotSent:
-                if not sent:  # nothing of it has left
-                    machine.unsent(command)
-                    raise
-            sent = sent or isinstance(message, Publication)
+                if has_left and not isinstance(command, Stop):
+                    return  # the rest of an order must not follow over the next connection
+                machine.unsent(command)
+                raise
+            has_left = has_left or isinstance(message, Publication)
 
     def _try(self, messages: Iterable[Message]) -> None:
         """Do what belongs to no command; a loss is noticed by its missing effect."""

@@ -29,6 +29,7 @@ from arboleda.drivers import (
     plain,
 )
 from arboleda.wire.transport import Delivery, Publication
+from arboleda_drivers.connections.link import LogLine
 from arboleda_drivers.meaning import UnreadableValue
 from arboleda_drivers.plc.checks import answers
 
@@ -41,13 +42,7 @@ from .showing import Showing
 BEAT_S = 0.3  # period of reports of what is known
 ASK_S = 5.0  # between two tries to have it tell what is not known
 LONGEST_WORD = 100
-
-
-@dataclass(frozen=True, kw_only=True)
-class LogLine:
-    """A sentence for the log."""
-
-    text: str
+STANDS = (MotionState.STOPPED, MotionState.STOP_LATCHED)
 
 
 Message = Report | Publication | LogLine
@@ -187,7 +182,7 @@ class MappedDevice:
             raise NotSent(f"nothing is sent for {command.word or 'this'}")
         number, self._next = self._next, self._next + 1
         until = -math.inf if self._is_named(command) else now + 2 * command.at_most_s
-        self._order = order = Order(command=command, number=number, until=until)
+        self._order, self._stop = (order := Order(command=command, number=number, until=until)), None
         if order.is_work:
             self._showing.order(now)
         values: dict[str, Value] = {**dict(command.values), ID: command.id, NUMBER: number}
@@ -253,8 +248,6 @@ class MappedDevice:
             if state is None and order is not None and order.command.sets:
                 shown = self._showing.has_shown(order.command.sets)
                 state = MotionState.STOPPED if shown else None
-        if state is MotionState.STOPPED and self._stop is not None:
-            self._receipts["accepted"], self._stop = self._stop, None
         return MotionState.STOP_LATCHED if self._latched and state is MotionState.STOPPED else state
 
     def _told(self, now: float) -> list[Message]:
@@ -265,6 +258,8 @@ class MappedDevice:
         if (why := self._trouble(now)) is not None:
             return lost(self._device.name, at=now, why=why)
         state = self._motion(now)
+        if state in STANDS and self._stop is not None:
+            self._receipts["accepted"], self._stop = self._stop, None
         return Report(
             at=now,
             robot=self._device.name,

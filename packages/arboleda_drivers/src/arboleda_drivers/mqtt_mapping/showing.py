@@ -7,17 +7,11 @@ import math
 from arboleda.drivers import DeviceKind, Facts, MotionState, Value
 from arboleda.wire.transport import Delivery
 from arboleda_drivers.meaning import UnreadableValue, as_text
+from arboleda_drivers.plc.plc_snapshot import STATES
 
 from .heard import NOTHING, Heard, lack
 from .keys import Keys
 from .link import Link
-
-STATES = {
-    "stopped": MotionState.STOPPED,
-    "moving": MotionState.MOVING,
-    "fault": MotionState.FAULT,
-    "latched": MotionState.STOP_LATCHED,
-}
 
 
 class Showing:

@@ -28,6 +28,7 @@ from arboleda.drivers import (
     lost,
     plain,
 )
+from arboleda_drivers.connections.link import LogLine
 
 from . import factsheet
 from .answers import Answers
@@ -51,13 +52,6 @@ class Publish:
 
     topic: str
     body: Mapping[str, Any]
-
-
-@dataclass(frozen=True, kw_only=True)
-class LogLine:
-    """A sentence for the log."""
-
-    text: str
 
 
 Message = Report | Publish | LogLine

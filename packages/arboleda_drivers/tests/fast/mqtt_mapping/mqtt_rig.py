@@ -9,8 +9,9 @@ from arboleda.drivers import Device, NotSent, Report, Stop, StopMode
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.loader import load
 from arboleda.wire.transport import Delivery, Publication
+from arboleda_drivers.connections.link import LogLine
 from arboleda_drivers.mqtt_mapping.heard import matches
-from arboleda_drivers.mqtt_mapping.machine import LogLine, MappedDevice, Message
+from arboleda_drivers.mqtt_mapping.machine import MappedDevice, Message
 from arboleda_drivers.mqtt_mapping.settings import Settings
 from arboleda_drivers.mqtt_mapping.virtual.machine import FAULTS, VirtualMapped
 from arboleda_drivers.virtual.faults import Faults

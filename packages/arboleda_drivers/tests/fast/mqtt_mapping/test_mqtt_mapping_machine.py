@@ -202,6 +202,16 @@ def test_a_device_is_not_said_to_stand_by_a_state_from_before_its_order(cover: R
     assert cover.thing.done == []
 
 
+def test_a_stop_that_was_never_confirmed_takes_no_answer_from_a_later_order(arm: Rig) -> None:
+    arm.faults.switch("mute", on=True)
+    arm.give("turn", to=90)
+    arm.stop(StopMode.HALT)
+    arm.give("turn", id="c2", to=0)
+    arm.tell("arm/ack", '{"seq": 2, "is": "taken"}')
+    arm.tell("arm/state", '{"mode": "idle", "joints": [{"deg": 0}]}')
+    assert arm.report.accepted == "c2"
+
+
 def test_a_latched_device_takes_no_order_until_it_is_cleared(cover: Rig) -> None:
     cover.stop(StopMode.LATCH)
     assert cover.report.state is MotionState.STOP_LATCHED

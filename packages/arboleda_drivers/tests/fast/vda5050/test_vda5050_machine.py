@@ -8,7 +8,7 @@ import pytest
 
 from arboleda.drivers import MotionState, NotSent, Report, Stop, StopMode
 from arboleda.kinds.mobile import FollowPath
-from arboleda_drivers.vda5050.machine import LogLine
+from arboleda_drivers.connections.link import LogLine
 from arboleda_drivers.vda5050.messages import Headers
 from arboleda_drivers.vda5050.settings import EdgeAction, Settings
 from arboleda_drivers.vda5050.stops import AGAIN_S
