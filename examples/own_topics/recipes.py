@@ -1,4 +1,4 @@
-"""What the cells of these plants do; each cell says which of it."""
+"""Recipes of the cells of these plants; each cell says which it offers."""
 
 from arboleda.recipes import Choice, recipe, work
 

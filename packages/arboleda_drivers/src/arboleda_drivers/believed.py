@@ -1,4 +1,4 @@
-"""What a person is shown of a mapping: how much is believed by it, and examples of the values of verbs."""
+"""Lines on a mapping for a person: how much is believed by it, and examples of the values of verbs."""
 
 from __future__ import annotations
 

@@ -26,10 +26,10 @@ from arboleda_drivers.ros_mapping.events import (
     Response,
     Send,
 )
+from arboleda_drivers.ros_mapping.heard_facts import Told
 from arboleda_drivers.ros_mapping.keys import Call, End, Fields, Qos
 from arboleda_drivers.ros_mapping.machine import Machine
 from arboleda_drivers.ros_mapping.settings import Settings
-from arboleda_drivers.ros_mapping.told import Told
 from arboleda_drivers.ros_mapping.types import message_of
 
 

@@ -1,4 +1,4 @@
-"""What a device was asked to end: cancels of its actions, and the calls of a stop and of its end."""
+"""Requests that a device end something: cancels of its actions, and the calls of a stop and of its end."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Asks:
         return key in self._asked_at
 
     def answered_for_s(self, now: float, key: Asked) -> float:
-        """How long ago the last cancel was answered; inf where none was, -inf while one is open."""
+        """Time since the last cancel was answered, s; inf where none was, -inf while one is open."""
         return -math.inf if self.is_open(key) else now - self._answered_at.get(key, -math.inf)
 
     def begin(self, now: float, key: Asked) -> None:

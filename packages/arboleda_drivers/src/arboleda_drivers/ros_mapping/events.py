@@ -9,9 +9,9 @@ from arboleda.drivers import Report
 from arboleda_drivers.connections.link import CommandNotSent, CommandRequest
 from arboleda_drivers.ros_action.events import Said, UnusableMessage
 
+from .heard_facts import Told
 from .keys import Call, End
 from .presence import Found
-from .told import Told
 
 
 @dataclass(frozen=True, kw_only=True)

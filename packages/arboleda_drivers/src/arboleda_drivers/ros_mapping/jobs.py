@@ -1,4 +1,4 @@
-"""What is under way at the other ends of a device, and what it was asked to end."""
+"""Work under way at the other ends of a device, and its failures in words."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from arboleda_drivers.ros_action.events import Status
 from arboleda_drivers.ros_action.goal import Goal
 from arboleda_drivers.ros_action.homing import LONGEST_WORD
 
+from .heard_facts import TEXT
 from .keys import Call, Field, Verb
 from .paths import value_at
-from .told import TEXT
 
 SPARE_S = 0.5  # the plant's own deadline comes first
 
@@ -60,7 +60,7 @@ def failure(call: Call, status: Status, message: object) -> str:
 
 
 def word(field: Field, message: object) -> str:
-    """What a field says, in a word: that of the mapping, else its value."""
+    """The word for a field: that of the mapping, else its value."""
     raw = value_at(message, field.field)
     try:
         return str(field.value(raw, TEXT, field.field))

@@ -21,7 +21,7 @@ NOW = "$now"
 
 
 class End(NamedTuple):
-    """What is at the other end of a name: an `action`, a `service`, who hears what we `publish`, or a `topic`
+    """Other end of a name: an `action`, a `service`, who hears what we `publish`, or a `topic`
     that somebody else publishes."""
 
     kind: str
@@ -128,14 +128,14 @@ class Call:
 
 @dataclass(frozen=True, kw_only=True)
 class Verb(Call):
-    """What is sent for a verb; `answer` is the field of the result or response that answers a query."""
+    """Call for a verb; `answer` is the field of the result or response that answers a query."""
 
     answer: Field | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
 class Source(Meaning):
-    """Where a fact comes from: a `field` of a `topic`, of the `feedback` or the `result` of a verb, or with
+    """Source of a fact: a `field` of a `topic`, of the `feedback` or the `result` of a verb, or with
     `done` the verb that ended well last, whose word it then is. After `silent_s` without a message the link
     is lost."""
 
@@ -205,7 +205,7 @@ class Keys:
             yield ("state",), self.state
 
     def end(self, call: Call) -> End:
-        """What answers or hears a call."""
+        """The other end that answers or hears a call."""
         return End(call.kind, self.full(call.name))
 
     def full(self, name: str) -> str:

@@ -34,11 +34,11 @@ from arboleda_drivers.ros_action.homing import LONGEST_WORD
 
 from .asks import CLEAR, STOP, Asks
 from .events import ActionSaid, EndsFound, Event, GoalRequest, Message, MessageHeard, Response, Send
+from .heard_facts import ToldFacts
 from .jobs import Job, failure, job
 from .keys import End, Keys
 from .paths import value_at
 from .presence import GONE_S, Presence
-from .told import ToldFacts
 
 SHOWN_S = 1.0  # within it a topic shows what a result has said
 REPORT_S = 0.1  # a report at least so often

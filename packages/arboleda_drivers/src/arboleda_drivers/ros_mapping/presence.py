@@ -1,4 +1,4 @@
-"""Who is at the other ends of a device: servers, publishers, and those who hear what is published."""
+"""Presence of the other ends of a device: servers, publishers, and those who hear what is published."""
 
 from __future__ import annotations
 

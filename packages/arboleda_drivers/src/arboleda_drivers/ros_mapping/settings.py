@@ -12,8 +12,8 @@ from arboleda_drivers.believed import LEVELS, examples, headline
 from arboleda_drivers.plc import checks
 from arboleda_drivers.plc.checks import Place, Problem
 
+from .heard_facts import STATE
 from .keys import Call, Keys, Source, Verb
-from .told import STATE
 from .types import HEARD, heard_in, message_of, misspelt
 
 WORKS = (Effect.MOTION, Effect.PROCESS)
@@ -25,7 +25,7 @@ class Settings(Keys):
     """Settings of the driver `ros`: the mapping of one device."""
 
     def evidence_of(self, device: Robot) -> Evidence:
-        """What the mapping proves: actions and services name what they answer, what is published does not."""
+        """The evidence of the mapping: actions and services name their calls; messages name nothing."""
         return Evidence.JOINTS if any(_published_works(self, device)) else Evidence.IDS
 
     def problems(self, device: Robot) -> Iterator[Problem]:

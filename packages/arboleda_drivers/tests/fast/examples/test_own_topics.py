@@ -27,7 +27,7 @@ LEVELS = {"facts": "joints"}  # as the model calls it
 
 
 def ended(file: str, task: str, fault: str = "") -> tuple[TopicsRig, TaskChanged]:
-    """How a task ends, with a fault from its beginning on, if any."""
+    """The end of a task, with a fault from its beginning on, if any."""
     rig = TopicsRig(file, task)
     world = World(rig, Result(seed=0, faults=()), tasks=1)
     world.advance(3.0)

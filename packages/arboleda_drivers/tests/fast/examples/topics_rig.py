@@ -38,7 +38,7 @@ class TopicsRig(Rig):
 
     @property
     def done(self) -> list[str]:
-        """What the devices have done."""
+        """The deeds of the devices."""
         return [f"{name} {verb}" for name, thing in self.things.items() for verb in thing.done]
 
     def task(self, number: int) -> str:

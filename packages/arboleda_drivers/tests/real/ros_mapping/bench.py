@@ -47,4 +47,4 @@ def _open(folder: Path, state: Path) -> Opened:
     return app, lambda app: PlayedServer(Fingers())
 
 
-BENCH = Bench(open=_open, takes="arboleda_drivers.ros_mapping.told.ToldFacts.hear")
+BENCH = Bench(open=_open, takes="arboleda_drivers.ros_mapping.heard_facts.ToldFacts.hear")

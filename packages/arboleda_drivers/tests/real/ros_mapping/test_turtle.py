@@ -14,7 +14,7 @@ STEP_S, STEP = 0.02, 0.1
 
 
 class Turtle:
-    """What turtlesim has of its first turtle: `rotate_absolute`, `set_pen` and `pose`."""
+    """Names of the first turtle of turtlesim: `rotate_absolute`, `set_pen` and `pose`."""
 
     def __init__(self) -> None:
         from rclpy.action import ActionServer, CancelResponse
