@@ -188,9 +188,10 @@ def _machine(document: Document, place: Place, kinds: Kinds) -> Device | None:
         here = (*place, "kind")
         document.problem(here, f"{kind.name} has no verbs; only a device with a driver may have none")
         return None
-    proven = [is_proven(document, place, kind.name, verb, evidence) for verb in kind.verbs.values()]
-    if not all(proven):
-        return None
+    if way is not Link.DRIVER:  # else it is checked with its driver, whose settings may give the evidence
+        proven = [is_proven(document, place, kind.name, verb, evidence) for verb in kind.verbs.values()]
+        if not all(proven):
+            return None
     return Device(
         name=name,
         mqtt=shape.mqtt or name,
