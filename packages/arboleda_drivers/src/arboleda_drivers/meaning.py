@@ -138,6 +138,13 @@ def as_text(value: object) -> str:
     return f"{value:.10g}" if isinstance(value, float) else str(value)
 
 
+def in_words(meant: Any) -> str:
+    """What a word means, for people: a value, the least and the greatest, or several texts."""
+    if not isinstance(meant, list | tuple):
+        return as_text(meant)
+    return (" to " if is_range(meant) else " or ").join(map(as_text, meant))
+
+
 def _shown(raw: object) -> str:
     if isinstance(raw, int) and not -LARGEST < raw < LARGEST:
         return "too large a number"

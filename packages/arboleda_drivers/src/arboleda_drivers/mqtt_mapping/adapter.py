@@ -13,7 +13,7 @@ from .heard import matches
 from .machine import MappedDevice, Message, device_of
 from .settings import Settings
 
-NUMBERS = 1000  # of orders that a start may give before it meets those of another
+NUMBERS = 1000  # of orders that a start may give before it meets those of another; its square is `MOST`
 
 
 @driver("mqtt", settings=Settings)

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 from arboleda.drivers import Device, DeviceVerb, Effect, Evidence, OnStop, Robot, Value, among
 from arboleda_drivers.believed import LEVELS, examples, headline
-from arboleda_drivers.meaning import as_text, is_range
+from arboleda_drivers.meaning import as_text, in_words
 from arboleda_drivers.plc import checks
 from arboleda_drivers.plc.checks import Place, Problem
 
+from . import unheard_of
 from .heard import Heard, Says
 from .keys import Keys
-from .sent import DEVICE, ID, NUMBER, OURS, Sent
+from .sent import DEVICE, ID, MOST, NUMBER, OURS, Sent
 
 WORKS = (Effect.MOTION, Effect.PROCESS)
 NOT_CHECKED = "what becomes of it is not checked; let a sensor or a person say it"
@@ -57,6 +57,7 @@ def problems(settings: Keys, device: Robot) -> Iterator[Problem]:
         if name in device.kind.verbs:
             yield from _verb(settings, device.kind.verbs[name])
     yield from _ways(settings, device)
+    yield from unheard_of.problems(settings, device)
     if device.evidence not in _levels(settings, device):
         level = evidence(settings, device)
         yield (
@@ -114,7 +115,8 @@ def _ids(settings: Keys, verb: DeviceVerb) -> Iterator[Problem]:
     failed = settings.fails(verb.name)
     is_named = _names_command(settings, verb) or (failed is not None and bool(failed.id))
     if is_named and not named:
-        yield ("verbs", verb.name, "send"), "its end names the command; send it with {id} or {number}"
+        how = f"send it with {{id}}, a text, or {{number}}, a whole number from 1 to {MOST}"
+        yield ("verbs", verb.name, "send"), f"its end names the command; {how}"
 
 
 def _ways(settings: Keys, device: Device) -> Iterator[Problem]:
@@ -178,12 +180,5 @@ def _condition(says: Says) -> str:
 
 
 def _what(heard: Heard) -> str:
-    words = ", ".join(f"{_meant(meant)} is {word}" for word, meant in heard.words.items())
+    words = ", ".join(f"{in_words(meant)} is {word}" for word, meant in heard.words.items())
     return " ".join(each for each in (heard.path or heard.pattern, heard.unit, words) if each)
-
-
-def _meant(meant: Any) -> str:
-    """A value, the least and the greatest, or several texts."""
-    if not isinstance(meant, list | tuple):
-        return as_text(meant)
-    return (" to " if is_range(meant) else " or ").join(map(as_text, meant))

@@ -50,6 +50,11 @@ class Source:
         found = re.search(self.pattern, text)
         return NOTHING if found is None else found[1]
 
+    @property
+    def where(self) -> str:
+        """The place in words."""
+        return f"{self.hear} {self.path or self.pattern}".strip()
+
     def named(self, device: str) -> str:
         """The topic for a device of that name."""
         return self.hear.replace("{device}", device)
@@ -71,11 +76,6 @@ class Heard(Meaning, Source):
         if isinstance(raw, str) and (ranges or (of.type is not str and not self.words)):
             raw = _as_written(raw)
         return self.value(raw, of, self.where)
-
-    @property
-    def where(self) -> str:
-        """The place in words."""
-        return f"{self.hear} {self.path or self.pattern}".strip()
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -36,11 +36,12 @@ from arboleda_drivers.plc.checks import answers
 from .heard import NOTHING, Says
 from .keys import Keys
 from .link import Link
-from .sent import DEVICE, ID, NUMBER, Sent
+from .sent import DEVICE, ID, MOST, NUMBER, Sent
 from .showing import Showing
 
 BEAT_S = 0.3  # period of reports of what is known
 ASK_S = 5.0  # between two tries to have it tell what is not known
+ASK_AT_WORK_S = 1.0  # the same while it is at work
 LONGEST_WORD = 100
 STANDS = (MotionState.STOPPED, MotionState.STOP_LATCHED)
 
@@ -50,11 +51,15 @@ Message = Report | Publication | LogLine
 
 @dataclass(frozen=True, kw_only=True)
 class Order:
-    """Order under way, by its number at this device; `until` no other is taken, as its end may come late."""
+    """Order under way, by its number at this device; its end may come until `late_at`.
+
+    `is_named`: no late message can be taken for the end of another order.
+    """
 
     command: VerbCommand
     number: int
-    until: float
+    late_at: float
+    is_named: bool
 
     @property
     def ids(self) -> tuple[str, str]:
@@ -180,9 +185,10 @@ class MappedDevice:
             raise NotSent(why)
         if not isinstance(command, VerbCommand) or command.verb not in self._settings.verbs:
             raise NotSent(f"nothing is sent for {command.word or 'this'}")
-        number, self._next = self._next, self._next + 1
-        until = -math.inf if self._is_named(command) else now + 2 * command.at_most_s
-        self._order, self._stop = (order := Order(command=command, number=number, until=until)), None
+        number, self._next = self._next, self._next % MOST + 1
+        late_at, is_named = now + 2 * command.at_most_s, self._is_named(command)
+        order = Order(command=command, number=number, late_at=late_at, is_named=is_named)
+        self._order, self._stop = order, None
         if order.is_work:
             self._showing.order(now)
         values: dict[str, Value] = {**dict(command.values), ID: command.id, NUMBER: number}
@@ -195,9 +201,9 @@ class MappedDevice:
         if self._latched:
             return f"{self._device.name} is stopped until it is cleared"
         order = self._order
-        if order is None or now >= order.until:
+        if order is None or order.is_named or now >= order.late_at:
             return None
-        left_s = order.until - now
+        left_s = order.late_at - now
         what = f"{self._device.name} has not said yet that it has ended {order.command.verb}"
         return f"{what}, and what it says names no command; wait {left_s:.0f} s, or until it has"
 
@@ -250,6 +256,13 @@ class MappedDevice:
                 state = MotionState.STOPPED if shown else None
         return MotionState.STOP_LATCHED if self._latched and state is MotionState.STOPPED else state
 
+    def _is_at_work(self, now: float) -> bool:
+        """True while it moves, or does not show yet what was ordered."""
+        motion, order = self._motion(now), self._order
+        if motion is MotionState.MOVING or order is None or now >= order.late_at:
+            return motion is MotionState.MOVING
+        return motion not in STANDS or not {*order.command.sets} <= {*self._showing.facts}
+
     def _told(self, now: float) -> list[Message]:
         self.next_deadline = now + BEAT_S
         return [*self._asked(now), self._report(now)]
@@ -271,8 +284,11 @@ class MappedDevice:
         )
 
     def _asked(self, now: float) -> Iterator[Publication]:
-        """Messages that ask for its facts and state, where some are not known."""
-        if not self._link.broker or self._showing.is_whole or now < self._ask_at + ASK_S:
+        """Messages that ask for its facts and state, where some are not known or are about to change."""
+        is_at_work = self._is_at_work(now)
+        if not self._link.broker or (self._showing.is_whole and not is_at_work):
+            return
+        if now < self._ask_at + (ASK_AT_WORK_S if is_at_work else ASK_S):
             return
         self._ask_at = now
         yield from self._filled(self._settings.ask, {})

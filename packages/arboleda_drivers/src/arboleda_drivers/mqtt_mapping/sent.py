@@ -18,13 +18,15 @@ DEVICE, ID, NUMBER = "device", "id", "number"
 OURS = (DEVICE, ID, NUMBER)
 """Names beside the parameters of a verb: the device's name in its topics, and the command's id and number."""
 
+MOST = 1_000_000  # the greatest number of a command; 1 follows it
+
 
 @dataclass(frozen=True, kw_only=True)
 class Sent:
     """Message: `{name}` in it is the parameter of the verb, `{device}` the device's name in its topics.
 
     A payload with keys or a list is sent as JSON; a text in it that is `{name}` alone is the value itself.
-    `{id}` and `{number}` are those of the command. `words` are the values to send in place of words.
+    `{id}` is a text, and `{number}` is from 1 to `MOST`; both are of the command. `words` are the values to send in place of words.
     """
 
     topic: str

@@ -72,6 +72,29 @@ STATE = "state: {hear: door/state, words: {stopped: [open, closed], moving: [ope
         (PLUG, PLUG_MAPPING, "facts:", "unheard: [power]\nfacts:", "power is heard by facts; keep one"),
         (COVER, COVER_MAPPING, AT, "unheard: [open]", "only a switch may set open"),
         (ARM, ARM_MAPPING, "silent_after_s: 3", "silent_after_s: 0", "silent_after_s is 0; allowed: 0.5 to"),
+        (
+            COVER,
+            COVER_MAPPING,
+            "halt:",
+            "done: {hear: door/state, equals: [open, done]}\nhalt:",
+            "done is never heard at door/state: state knows open or closed, opening or closing there",
+        ),
+        (
+            ARM.replace("angle: int", "angle: [0, 90]"),
+            ARM_MAPPING,
+            "done: {hear: arm/ack, id: seq, path: is, equals: done}",
+            'done: {hear: arm/state, path: "joints[0].deg", equals: 45}',
+            "45 is never heard at arm/state joints[0].deg: angle knows 0, 90 there",
+        ),
+        (PLUG, PLUG_MAPPING, 'words: {on: "ON", off: "OFF"}}}', 'words: {off: "OFF"}}}', "turn sets power to on"),
+        (ARM, ARM_MAPPING, "near: 1", "scale: 0", "scale is 0; allowed: any number but 0"),
+        (
+            ARM.replace("angle: int", "angle: number"),
+            ARM_MAPPING,
+            "near: 1",
+            "near: 4",
+            "turn sets angle to 90, and nothing that is heard means that; look at scale and near",
+        ),
     ],
 )
 def test_what_is_wrong_is_told(

@@ -306,3 +306,30 @@ def test_what_is_not_known_is_asked(tmp_path: Path) -> None:
     assert [each.topic for each in rig.sent] == ["ask/it"]
     rig.run(10.0)
     assert len(rig.sent) == 1  # it has told all
+
+
+def test_a_device_that_tells_nothing_unasked_is_asked_until_it_shows_what_was_ordered(tmp_path: Path) -> None:
+    rig = Rig(*device_in(plant_of(tmp_path, COVER, COVER_MAPPING + "ask: [{topic: ask/it}]\n")))
+    rig.run(1.0)
+    for fault in ("stick", "mute"):
+        rig.faults.switch(fault, on=True)
+    rig.give("move", to="open")
+    rig.sent.clear()
+    rig.run(6.0)
+    assert [each.topic for each in rig.sent] == ["ask/it"] * 5, "every 1.2 s, as it reports every 0.3 s"
+    rig.tell("door/at", "1")
+    rig.tell("door/state", "open")
+    rig.sent.clear()
+    rig.run(10.0)
+    assert rig.sent == [] and rig.report.state is MotionState.STOPPED
+
+
+def test_what_never_comes_is_not_asked_for_without_end(tmp_path: Path) -> None:
+    rig = Rig(*device_in(plant_of(tmp_path, PLUG, PLUG_MAPPING + "ask: [{topic: ask/it}]\n")))
+    rig.run(1.0)
+    rig.faults.switch("mute", on=True)
+    rig.give("turn", to="on")
+    rig.run(6.0)  # twice its at_most_s
+    rig.sent.clear()
+    rig.run(20.0)
+    assert rig.sent == []
