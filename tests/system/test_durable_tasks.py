@@ -37,7 +37,7 @@ def test_a_killed_plant_loses_no_task_and_does_none_twice(arboleda: Callable[...
     assert kept(arboleda) == {"sis_a 0B 1": "done", "sis_a 0B 2": "running", "sis_a 0B 3": "queued"}
 
     second = arboleda(*UP, "sis_b 0B 4")
-    second.wait_for("sis_a: task two was at work when the plant stopped, at its step")
+    second.wait_for("task two was at work when the plant stopped, at its step")
     second.wait_for("1 task of an earlier start waits in sis_a; resume sis_a starts it")
     second.wait_for("done      sis_b 0B 4")
     refused = arboleda("resume", "sis_a")  # its boards were in the process that was killed

@@ -71,7 +71,7 @@ def test_it_does_not_wait_for_tasks_that_a_held_cell_cannot_start(started) -> No
 
 def snapshot(*offline: str, **cells: dict[str, Any]) -> dict[str, Any]:
     """Cells that are idle, each with an arm and a camera; `cells`: what of one is otherwise."""
-    idle = {"paused": False, "task": None, "not_ready": "an arm was not heard yet"}
+    idle = {"paused": False, "task": None, "state": "idle", "not_ready": "an arm was not heard yet"}
     rows = [
         {
             "name": name,
@@ -163,6 +163,36 @@ def test_a_task_that_several_cells_may_do_is_over_where_none_can() -> None:
 def test_who_stays_up_waits_without_end() -> None:
     waiting = Waiting("sis_a 1", patience_s=None)
     assert [waiting.at(at, snapshot("arm_sis_a")) for at in (0.0, 1e6)] == [0, 0]
+
+
+HELD = {
+    "task": {"id": "t-before"},
+    "state": "held",
+    "paused": True,
+    "advice": ["retry", "abandon"],
+    "waiting_for": "sis_a is held; retry sis_a or abandon sis_a",
+}
+
+
+def test_a_task_behind_one_of_an_earlier_start_is_over_with_what_is_said_to_it() -> None:
+    waiting = Waiting("sis_a 1", "sis_b 1")
+    assert waiting.at(0.0, snapshot(sis_a=HELD)) == 0
+    waiting.errand.changed(change("sis_b 1", TaskState.DONE))
+    assert waiting.ends == 1 and waiting.errand.needs_person and not waiting.errand.ok
+    assert waiting.errand.results["t-sis_a 1"].sentence == HELD["waiting_for"]
+
+
+@pytest.mark.parametrize("otherwise", [{"advice": []}, {"state": "execute"}, {"task": {"id": "t-sis_a 1"}}])
+def test_a_cell_that_may_still_go_on_by_itself_is_waited_for(otherwise: dict[str, Any]) -> None:
+    waiting = Waiting("sis_a 1", "sis_a 2")
+    assert [waiting.at(at, snapshot(sis_a=HELD | otherwise)) for at in (0.0, 60.0)] == [0, 0]
+
+
+def test_a_device_of_an_earlier_task_is_waited_for_before_a_person_decides() -> None:
+    waiting = Waiting("sis_a 1")
+    gone = snapshot("arm_sis_a", sis_a=HELD)
+    assert [waiting.at(0.0, gone), waiting.at(9.9, gone), waiting.at(10.0, gone)] == [0, 0, 1]
+    assert [str(each) for each in waiting.errand.missing] == ["arm_sis_a is offline"]
 
 
 def test_tasks_of_others_do_not_matter(started) -> None:

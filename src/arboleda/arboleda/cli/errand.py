@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass, replace
 from typing import Any
 
+from arboleda.model.cell_states import CellState
 from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.model.sentence import Sentence
 
@@ -17,7 +18,7 @@ ENDED = frozenset({TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED, TaskSt
 
 @dataclass(frozen=True, kw_only=True)
 class Absence:
-    """A cell that begins no task because devices of it are offline, since `since` on the clock."""
+    """A cell that begins none of the tasks because devices of it are offline, since `since` on the clock."""
 
     since: float
     why: tuple[Sentence, ...]  # for each device
@@ -27,7 +28,7 @@ class Errand:
     """Ask `submit` for every text; `finished` is called once, in the plant's thread, at the end of all.
 
     A task that waits for a device that was offline for `patience_s` counts as over, like all others; None: it
-    is waited for.
+    is waited for. So does a task behind one of an earlier start, for which a person has to decide.
     """
 
     def __init__(
@@ -48,10 +49,16 @@ class Errand:
         self.seconds: dict[str, float] = {}
         self._finished = finished
         self._answer_count = 0
-        self._blocked: set[str | None] = set()
+        self._blocked: dict[str | None, Sentence | None] = {}  # by cell, what is said to tasks that wait there
         self._is_reported = False
         self._started: dict[str, float] = {}
         self._lock = threading.Lock()
+
+    @property
+    def needs_person(self) -> bool:
+        """True where a task could not begin before a person acts."""
+        waiting = (change.cell for change in self._waiting())
+        return any(cell in self._blocked and not self._is_given_up(cell) for cell in waiting)
 
     @property
     def ok(self) -> bool:
@@ -73,13 +80,16 @@ class Errand:
 
     def note_snapshot(self, snapshot: dict[str, Any]) -> None:
         """Note which cells of a snapshot start no task before an operator acts or a device is back."""
-        blocked = [cell["name"] for cell in snapshot["cells"] if cell["paused"] and not cell["task"]]
-        absent = _absent(snapshot)
         with self._lock:
+            idle = [cell for cell in snapshot["cells"] if not cell["task"]]
+            held = [cell for cell in snapshot["cells"] if self._is_of_before(cell)]
+            absent = _absent([*(cell for cell in idle if cell["not_ready"]), *held], snapshot["robots"])
+            blocked = [cell for cell in idle if cell["paused"]]
+            blocked += [cell for cell in held if cell["advice"] and cell["name"] not in absent]
             now = self._clock()
             known = {cell: each.since for cell, each in self._absent.items()}
             self._cells = {cell["name"] for cell in snapshot["cells"]}
-            self._blocked = set(blocked)
+            self._blocked = {cell["name"]: cell.get("waiting_for") for cell in blocked}
             self._absent = {
                 cell: Absence(since=known.get(cell, now), why=why) for cell, why in absent.items()
             }
@@ -115,8 +125,15 @@ class Errand:
             change.state is TaskState.QUEUED and self._is_stuck(change.cell) for change in self._waiting()
         )
 
+    def _is_of_before(self, cell: dict[str, Any]) -> bool:
+        """True for a cell that is held with a task of an earlier start, or of another client."""
+        return bool(cell["task"]) and cell["state"] == CellState.HELD and cell["task"]["id"] not in self.results
+
     def _say_what_is_missing(self) -> None:
         """Replace the sentences of tasks that wait by those that are true now."""
+        for task, change in self.results.items():
+            if change.state is TaskState.QUEUED and (why := self._blocked.get(change.cell)) is not None:
+                self.results[task] = replace(change, sentence=why)
         gone = {cell: each for cell, each in self._absent.items() if self._is_given_up(cell)}
         for task, change in self.results.items():
             found = [each for cell, each in gone.items() if change.cell in (cell, None)]
@@ -141,16 +158,15 @@ class Errand:
         return self._clock() - absence.since >= self._patience_s
 
 
-def _absent(snapshot: dict[str, Any]) -> dict[str, tuple[Sentence, ...]]:
-    """The cells that begin no task because devices are offline, with a sentence about each of these."""
+def _absent(
+    cells: Iterable[dict[str, Any]], robots: Iterable[dict[str, Any]]
+) -> dict[str, tuple[Sentence, ...]]:
+    """Those of these cells of which devices are offline, with a sentence about each device."""
     offline = {
-        robot["name"]: robot["obstacle"]
-        for robot in snapshot["robots"]
-        if not robot["online"] and robot["obstacle"]
+        robot["name"]: robot["obstacle"] for robot in robots if not robot["online"] and robot["obstacle"]
     }
-    found = {}
-    for cell in snapshot["cells"]:
-        why = tuple(offline[each["name"]] for each in cell["devices"] if each["name"] in offline)
-        if why and cell["not_ready"] and not cell["task"]:
-            found[cell["name"]] = why
-    return found
+    said = {
+        cell["name"]: tuple(offline[each["name"]] for each in cell["devices"] if each["name"] in offline)
+        for cell in cells
+    }
+    return {cell: why for cell, why in said.items() if why}

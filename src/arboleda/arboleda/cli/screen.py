@@ -137,6 +137,8 @@ class Screen:
         if self.console.is_terminal:
             return
         for cell in snapshot["cells"]:
+            if cell["state"] == CellState.HELD:
+                continue  # its step goes on once a person says so
             if cell["step"] != self._steps.get(cell["name"]) and cell["step"] is not None:
                 self.say(_words(f"  {cell['name']}: {say(cell['step'])}"), at)
             self._steps[cell["name"]] = cell["step"]

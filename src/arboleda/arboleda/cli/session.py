@@ -40,6 +40,10 @@ WAITED = Phrase(
     "After {seconds} s no task can begin without devices that are offline; "
     "--wait-for-devices SECONDS waits longer:",
 )
+NEEDS_PERSON = Phrase(
+    "cli.session.needs_person",
+    "A person has to act before that can begin: start the plant without --once to do so.",
+)
 STAYS = Phrase(
     "cli.session.stays", "The plant stays up for more tasks: {command} submit 'TASK'. Ctrl-C ends it."
 )
@@ -155,6 +159,8 @@ class Session:
         for line in self._errand.missing:
             self._console.print(Text(f"  {plain(say(line), LONGEST)}", style="red"), soft_wrap=True)
         if not self._stay:
+            if self._errand.needs_person:
+                self._console.print(Text(say(NEEDS_PERSON()), style="red"))
             self._app.end()
             return
         self._console.print(Text(say(STAYS(command=invocation.command()))))

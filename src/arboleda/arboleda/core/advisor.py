@@ -96,6 +96,8 @@ class Advisor:
             yield _abandon(run, WILL_BE_HOMED(arm=homed[0]))
         elif run.stranded:
             yield _abandon(run, run.stranded)
+        elif run.awaits and not run.trouble:  # what its devices say decides whether it can go on
+            yield replace(_abandon(run, reasons.cause_of_hold(run)), instead=True)
         else:
             verb = Verb.RETRY if run.trouble else Verb.RESUME
             yield Advice(do=verb, scope=run.cell.name, why=reasons.cause_of_hold(run), moves=_movers(run))

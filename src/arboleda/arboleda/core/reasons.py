@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from arboleda.model import advice
 from arboleda.model.cell_states import CellState
-from arboleda.model.sentence import BOTH, NOTHING, Phrase, Sentence
+from arboleda.model.sentence import BOTH, Phrase, Sentence
 from arboleda.trees.tree_run import step_of
 
 from .cell import STOPPED, CellRun
@@ -25,11 +25,6 @@ BY_OPERATOR = Phrase("cell.by_operator", "by the operator")
 """Reason of a hold where nothing is wrong."""
 WAS_AT_WORK = Phrase("walk.at_work", "task {task} was at work when the plant stopped")
 AT_STEP = Phrase("walk.stands_at", 'task {task} was at work when the plant stopped, at its step "{step}"')
-FOUND = Phrase(
-    "walk.found",
-    "{cell}: {found}; resume {cell} goes on if its devices prove what they did, abandon {cell} gives it up",
-)
-FOUND_STRANDED = Phrase("walk.found_stranded", "{cell}: {found}; {why}; abandon {cell} gives it up")
 WAIT = Phrase("next.wait", "wait")
 UNTIL_STILL = Phrase("next.until_still", "wait until it stands still")
 NEXT = {
@@ -77,7 +72,7 @@ def of_hold(run: CellRun) -> Sentence | None:
 
 
 def cause_of_hold(run: CellRun) -> Sentence:
-    why = run.trouble.sentence if run.trouble else None
+    why = run.trouble.sentence if run.trouble else run.awaits
     if (at_work := _at_work(run)) is None:
         return why or BY_OPERATOR()
     return BOTH(first=at_work, second=why) if why else at_work
@@ -86,14 +81,6 @@ def cause_of_hold(run: CellRun) -> Sentence:
 def cause_of_stop(run: CellRun) -> Sentence:
     """The cause of a stop, or that it was not confirmed."""
     return run.trouble.sentence if run.trouble else STOPPED(cell=run.cell.name)
-
-
-def of_earlier_task(run: CellRun) -> Sentence | None:
-    """The step at which an earlier start left a task, and what to do; None without such a task."""
-    if (at_work := _at_work(run)) is None:
-        return None
-    phrase = FOUND if run.stranded is None else FOUND_STRANDED
-    return phrase(cell=run.cell.name, found=at_work, why=run.stranded or NOTHING)
 
 
 def _at_work(run: CellRun) -> Sentence | None:

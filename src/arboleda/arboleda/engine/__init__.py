@@ -18,7 +18,6 @@ from arboleda.core.intake import HISTORY
 from arboleda.core.operator import ACTS_TOLD
 from arboleda.core.plant import AWAY, Plant
 from arboleda.core.reasons import BY_OPERATOR
-from arboleda.core.reasons import of_earlier_task as why_interrupted
 from arboleda.core.reasons import of_hold as why_held
 from arboleda.core.reasons import of_waiting as why_waiting
 from arboleda.core.teaching import Teaching
@@ -129,7 +128,6 @@ __all__ = [
     "unsettled",
     "visit_from_anywhere",
     "why_held",
-    "why_interrupted",
     "why_waiting",
 ]
 MODULES = {

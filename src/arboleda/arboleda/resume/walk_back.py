@@ -33,9 +33,13 @@ STILL_MOVING = Phrase("walk.still_moving", "{robot} is still moving")
 NOT_SAID = Phrase("walk.not_said", "{robot} has not said yet what became of its last command")
 BOOTED = Phrase("walk.booted", "{robot} has booted since then, and may stand elsewhere")
 MOVED = Phrase("walk.moved", "{robot} no longer stands where the task began")
-NO_NUMBERS = Phrase("walk.no_numbers", "{robot} does not number its commands, and proves nothing; look at it")
+NO_NUMBERS = Phrase(
+    "walk.no_numbers",
+    "{robot} does not number its commands, and proves nothing; look at it, as retry does the step again",
+)
 UNPROVEN = Phrase(
-    "walk.unproven", "{robot} proves neither that it has done this nor that it has not; look at it"
+    "walk.unproven",
+    "{robot} proves neither that it has done this nor that it has not; look at it, as retry does it again",
 )
 MORE = Phrase("walk.more", "{robot} has taken commands of which this plant knows nothing")
 LOST = Phrase("walk.lost", "{robot} held a part then, and holds none now")

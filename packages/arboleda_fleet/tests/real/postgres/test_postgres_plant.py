@@ -40,7 +40,7 @@ def test_a_killed_plant_finds_its_tasks_in_the_database(
     first.kill()
     elsewhere = ("--state", str(tmp_path / "elsewhere"))  # as on another host
     again = arboleda(*UP, *store, *elsewhere)
-    again.wait_for("sis_a: task two was at work when the plant stopped, at its step")
+    again.wait_for("task two was at work when the plant stopped, at its step")
     again.wait_for("1 task of an earlier start waits in sis_a")
     again.wait_for("HTTP API")
     listed = arboleda("tasks", "--json", *elsewhere)  # a plant that runs says where it keeps them

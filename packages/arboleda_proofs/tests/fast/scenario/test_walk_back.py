@@ -19,6 +19,7 @@ from arboleda.model.messages import Fact, Reason, Remember, Shutdown, TaskState,
 from arboleda.model.plant_model import Evidence, PlantModel
 from arboleda.resume import fingerprint
 from arboleda.rig import faults
+from arboleda.runtime.parts.earlier_tasks import EarlierTasks
 from arboleda.testing import Rig, shipped
 from arboleda.testing.storage_layout import StorageLayout
 from arboleda.wire.payloads import EffectorGoal, encode
@@ -148,6 +149,25 @@ def test_who_numbers_no_commands_proves_nothing_and_a_person_decides(
     assert "does not number its commands" in str(rig.operate(Verb.RESUME, CELL))
     assert rig.operate(Verb.RETRY, CELL) is None
     assert outcome(rig) is TaskState.DONE
+
+
+@pytest.mark.parametrize("evidence", [Evidence.IDS, Evidence.STATE])
+def test_log_and_waiting_task_say_what_screens_say_once_devices_are_heard(
+    stage: Stage, evidence: Evidence, caplog: pytest.LogCaptureFixture
+) -> None:
+    rig, _ = stage(evidence)
+    at(rig, "move to pick-up")
+    restart(rig)
+    log = EarlierTasks(rig.plant)
+    log.stepped(rig.plant)
+    waits = held(rig)
+    assert not caplog.messages and waits.endswith(" or abandon sis_a")
+    assert "resume" not in waits and "retry" not in waits, "nobody knows yet which of them it will be"
+    for _ in range(20):
+        rig.wait(0.5)
+        log.stepped(rig.plant)
+    assert caplog.messages == [held(rig)] == [str(reasons.of_waiting(run(rig)))]
+    assert ("retry does the step again" in held(rig)) == (evidence is Evidence.STATE)
 
 
 def test_a_board_that_has_booted_meanwhile_leaves_only_the_recovery(stage: Stage) -> None:

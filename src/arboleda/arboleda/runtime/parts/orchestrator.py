@@ -22,7 +22,7 @@ from arboleda.departures.leaving import (
     leaves_unkept,
     stop_left,
 )
-from arboleda.engine import Plant, why_interrupted
+from arboleda.engine import Plant
 from arboleda.host.pieces import Pieces
 from arboleda.model.commands import Command, Stop
 from arboleda.model.errors import ArboledaError
@@ -62,6 +62,7 @@ from arboleda.store.task_rows import COMMAND, History, TaskQuery
 from ..loop import Loop
 from ..memory import begun, kept_task, kept_tasks, remembered
 from .askers import Askers
+from .earlier_tasks import EarlierTasks
 from .keeping import Keeping
 from .listeners import LeaveOut, Listeners
 from .part import Crash
@@ -165,6 +166,7 @@ class Orchestrator:
         leave_out = leave_out or Pieces().leave_out
         self.listeners: Listeners[TaskChanged] = Listeners(leave_out)
         self.observers: Listeners[Plant] = Listeners(leave_out)  # told after each step; they must not wait
+        self.observers.append(EarlierTasks(self.plant).stepped)
         self.screens = Screens(self.plant, self.loop, self.keeping, leave_out)
         self.reacted: Callable[[float], None] = lambda _seconds: None
         self._history = history
@@ -218,8 +220,6 @@ class Orchestrator:
         if ros is not None and (store is None or store.lead.renew_s is None):
             ros.check_alone()
         for run in self.plant.cells.values():
-            if (why := why_interrupted(run)) is not None:
-                TASKS.warning("%s", why)
             if run.queue.left_over:
                 TASKS.warning("%s", run.queue.why_paused)
         self.screens.open()
