@@ -26,7 +26,8 @@ class Sent:
     """Message: `{name}` in it is the parameter of the verb, `{device}` the device's name in its topics.
 
     A payload with keys or a list is sent as JSON; a text in it that is `{name}` alone is the value itself.
-    `{id}` is a text, and `{number}` is from 1 to `MOST`; both are of the command. `words` are the values to send in place of words.
+    `{id}` and `{number}`, from 1 to `MOST`, are those of the command. `words` are the values to send in place
+    of words.
     """
 
     topic: str

@@ -12,7 +12,6 @@ from arboleda.plant_file import drivers
 from arboleda.plant_file.loader import load
 from arboleda_drivers.meaning import UnreadableValue
 from arboleda_drivers.mqtt_mapping.heard import Heard, Says, matches
-from arboleda_drivers.mqtt_mapping.listen.proposal import Listening
 from arboleda_drivers.mqtt_mapping.sent import Sent
 
 from .mqtt_rig import plant_of
@@ -86,7 +85,7 @@ STATE = "state: {hear: door/state, words: {stopped: [open, closed], moving: [ope
             'done: {hear: arm/state, path: "joints[0].deg", equals: 45}',
             "45 is never heard at arm/state joints[0].deg: angle knows 0, 90 there",
         ),
-        (PLUG, PLUG_MAPPING, 'words: {on: "ON", off: "OFF"}}}', 'words: {off: "OFF"}}}', "turn sets power to on"),
+        (PLUG, PLUG_MAPPING, '{on: "ON", off: "OFF"}}}', '{off: "OFF"}}}', "turn sets power to on"),
         (ARM, ARM_MAPPING, "near: 1", "scale: 0", "scale is 0; allowed: any number but 0"),
         (
             ARM.replace("angle: int", "angle: number"),
@@ -195,19 +194,3 @@ def test_a_message_says_it_of_one_command() -> None:
     assert not says.is_said(b'{"is": "ok", "seq": 4}', ("c9", "3"))
     assert not says.is_said(b'{"is": "no", "seq": 3}', ("c9", "3"))
     assert says.reason(b'{"text": "jam"}') == "jam"
-
-
-def test_a_mapping_is_proposed_from_what_is_heard() -> None:
-    heard = Listening()
-    for topic, payload, retained in (
-        ("tele/lamp/LWT", b"Online", True),
-        ("stat/lamp/POWER", b"ON", False),
-        ("stat/lamp/POWER", b"OFF", False),
-        ("tele/lamp/SENSOR", b'{"DS18B20": {"Temperature": 21.5}}', False),
-        ("tele/lamp/RAW", b"\xff\xfe", False),
-    ):
-        heard.take(topic, payload, retained=retained)
-    text = "\n".join(heard.proposal())
-    assert 'online: {hear: "tele/lamp/LWT", equals: "Online"}' in text
-    assert "power: [on, off]" in text and "temperature: number" in text
-    assert 'temperature: {hear: "tele/lamp/SENSOR", path: "DS18B20.Temperature"}' in text

@@ -15,7 +15,8 @@ from arboleda.extension import Phrase, StartError, say
 from arboleda.wire.transport import Connection, Delivery
 from arboleda_drivers.mqtt_mapping.keys import BROKER
 
-from .proposal import Listening
+from .hearing import Listening
+from .proposal import proposal
 
 CONNECT_S = 5.0
 NO_BROKER = Phrase("cli.topics.no_broker", "the MQTT broker at {broker} is not there")
@@ -61,7 +62,8 @@ def listen(
         client.close()
     if not heard.places:
         raise StartError(say(NOTHING_SAID(topic=about, broker=broker, seconds=took_s)))
-    print("\n".join(["", *heard.rates(took_s), *heard.proposal()]))
+    named = "" if broker == BROKER else broker
+    print("\n".join(["", *heard.rates(took_s), *proposal(heard, named)]))
 
 
 def _hear(events: SimpleQueue[Delivery | Connection], heard: Listening, broker: str, seconds: float) -> float:
@@ -80,7 +82,7 @@ def _hear(events: SimpleQueue[Delivery | Connection], heard: Listening, broker: 
                 is_up = is_up or event.up
                 continue
             known = len(heard.places)
-            heard.take(event.topic, event.payload, retained=event.retain)
+            heard.take(event.topic, event.payload, retained=event.retain, at=time.monotonic())
             for line in heard.lines(known):
                 print(line, flush=True)
     except KeyboardInterrupt:

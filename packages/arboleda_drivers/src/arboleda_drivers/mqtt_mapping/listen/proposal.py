@@ -1,138 +1,186 @@
-"""Proposal of a mapping, from what is heard of a device for a while."""
+"""Proposal of a kind and of a mapping, as lines for a plant file, from what is heard of a device."""
 
 from __future__ import annotations
 
 import json
+import math
 import re
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
-from itertools import islice
+from collections.abc import Iterator, Mapping, Sequence
 
-from arboleda.drivers import plain
-from arboleda_drivers.meaning import SCALARS, UnreadableValue, as_text, is_number
-from arboleda_drivers.mqtt_mapping.heard import decoded
+from arboleda_drivers.meaning import as_text, is_number
+from arboleda_drivers.mqtt_mapping.heard import places
+from arboleda_drivers.mqtt_mapping.virtual.saying import put
 
-MOST_WORDS = 8  # that a fact may have; more are any text
-PRESENCE = re.compile(r"lwt|availab|online|status|connect|alive|presence", re.IGNORECASE)
-THERE = ("online", "Online", "ONLINE", "connected", "true", "1")
-LONGEST_SHOWN = 48  # characters of a value that are shown
+from .guess import MOST_WORDS, Guess, Heard
+from .hearing import Listening, Place, Seen
+from .words import word
 
-
-@dataclass
-class Seen:
-    """Values that were heard at one place, each once, the last one last; `count` messages had one."""
-
-    values: list[object] = field(default_factory=list)
-    count: int = 0
-    retained: bool = False
-
-    def take(self, value: object, *, retained: bool) -> None:
-        self.count += 1
-        self.retained = self.retained or retained
-        if value in self.values:
-            self.values.remove(value)
-        self.values.append(value)
-
-    @property
-    def last(self) -> object:
-        return self.values[-1]
+LEAST_SILENCE_S = 5.0
+SILENCE = 3  # of the longest pause, after which a device counts as lost
+STATE = (
+    "    # state: nothing that was heard says whether it moves; if it does, write"
+    " state: {hear: TOPIC, words: {stopped: ..., moving: ...}}"
+)
+NO_COMMAND = (
+    "    # verbs: no command was heard; write one for each thing that it can do,"
+    " NAME: {send: [{topic: TOPIC, payload: ...}]}, and declare it above"
+)
+NO_STOP = "stop: none  # nothing that stops it was heard; if something does, delete this and write halt below"
+NO_END = "    # done: nothing that was heard says so by itself; its facts and its state say so"
 
 
-class Listening:
-    """Places of values, as topic and path, in the order in which they were heard."""
-
-    def __init__(self) -> None:
-        self.places: dict[tuple[str, str], Seen] = {}
-
-    def take(self, topic: str, payload: bytes, *, retained: bool) -> None:
-        """Take a message; one that is neither text nor JSON is none of a mapping."""
-        try:
-            text = decoded(payload).strip()
-        except UnreadableValue:
-            return
-        for path, value in _values(text):
-            self.places.setdefault((topic, path), Seen()).take(value, retained=retained)
-
-    def lines(self, after: int = 0) -> Iterator[str]:
-        """A line for each place after the first ones, with what it has said last."""
-        for (topic, path), seen in islice(self.places.items(), after, None):
-            said = plain(as_text(seen.last), LONGEST_SHOWN)
-            yield f"{topic} {path}".rstrip() + f": {said}{' (retained)' if seen.retained else ''}"
-
-    def rates(self, seconds: float) -> Iterator[str]:
-        """A line for each place: how often it has said something in this time."""
-        for (topic, path), seen in self.places.items():
-            yield f"# {seen.count} in {seconds:.0f} s: {topic} {path}".rstrip()
-
-    def proposal(self) -> Iterator[str]:
-        """The lines of a kind and of a mapping with all that was heard, to be put into a plant file."""
-        facts = {
-            (topic, path): seen for (topic, path), seen in self.places.items() if not _is_there(topic, seen)
-        }
-        names = _names(facts)
-        yield "kinds:"
-        yield "  thing:"
-        yield "    facts:"
-        yield from (f"      {names[place]}: {_type(seen)}" for place, seen in facts.items())
-        yield "    verbs: {}  # say what it can do"
-        yield "# and of the device:"
-        yield "driver:"
-        yield "  mqtt:"
-        yield from self._presence()
-        yield "    facts:"
-        for (topic, path), seen in facts.items():
-            at = f", path: {_quoted(path)}" if path else ""
-            yield f"      {names[topic, path]}: {{hear: {_quoted(topic)}{at}{_words(seen)}}}"
-        yield "    verbs: {}  # say what is sent for each"
-
-    def _presence(self) -> Iterator[str]:
-        for (topic, path), seen in self.places.items():
-            if _is_there(topic, seen):
-                at = f", path: {_quoted(path)}" if path else ""
-                equals = _quoted(_says_there(seen) or "")
-                yield f"    online: {{hear: {_quoted(topic)}{at}, equals: {equals}}}"
-                return
-        yield "    silent_after_s: 30  # nothing was heard that says whether it is there"
+def proposal(heard: Listening, broker: str = "") -> Iterator[str]:
+    """The lines of a kind and of a device; what cannot be known is a comment that says what to write."""
+    guess = Guess(heard)
+    names = _names({**guess.facts, **guess.of_itself})
+    verbs = [each for each in guess.commands if not each.stops]
+    yield "kinds:"
+    yield "  thing:"
+    yield "    facts:" if guess.facts else "    facts: {}"
+    yield from (f"      {names[place]}: {_type(seen)}" for place, seen in guess.facts.items())
+    yield from (f"      # {names[place]}: {_type(seen)}" for place, seen in guess.of_itself.items())
+    if verbs:
+        yield "    verbs:"
+        yield from (line for each in verbs for line in _declared(each, guess, names))
+    yield "# and of the device:"
+    if verbs and not any(each.stops for each in guess.commands):
+        yield NO_STOP
+    yield "driver:"
+    yield "  mqtt:"
+    yield from ([f"    broker: {broker}"] if broker else [])
+    yield from _presence(guess)
+    yield from _state(guess)
+    yield from _ends(guess)
+    yield "    facts:" if guess.facts else "    facts: {}"
+    yield from (_fact(names[place], place, seen) for place, seen in guess.facts.items())
+    if guess.of_itself:
+        yield "      # what it tells of itself; take out the # here and above for what a recipe needs"
+    yield from (
+        _fact(names[place], place, seen).replace("      ", "      # ", 1)
+        for place, seen in guess.of_itself.items()
+    )
+    yield from _verbs(verbs, guess)
 
 
-def _values(text: str) -> Iterator[tuple[str, object]]:
-    """The values in a message with their paths: those of JSON, else the whole text."""
-    try:
-        body = json.loads(text)
-    except (ValueError, RecursionError):
-        body = None
-    if isinstance(body, Mapping):
-        yield from _inside("", body)
-    elif text:
-        yield "", body if isinstance(body, SCALARS) else text
+def _presence(guess: Guess) -> Iterator[str]:
+    if guess.presence is not None:
+        place, said = guess.presence
+        yield f"    online: {{{_where(place)}, equals: {_quoted(said)}}}"
+        return
+    silent_s = max(LEAST_SILENCE_S, math.ceil(SILENCE * guess.longest_pause_s()))
+    yield f"    silent_after_s: {silent_s:g}  # nothing was heard that says whether it is there"
 
 
-def _inside(path: str, body: object) -> Iterator[tuple[str, object]]:
-    if isinstance(body, Mapping):
-        for key, value in body.items():
-            if not set(str(key)) & set(".[]"):
-                yield from _inside(f"{path}.{key}" if path else str(key), value)
-    elif isinstance(body, list):
-        for at, value in enumerate(body[:MOST_WORDS]):
-            yield from _inside(f"{path}[{at}]", value)
-    elif isinstance(body, SCALARS):
-        yield path, body
+def _state(guess: Guess) -> Iterator[str]:
+    if guess.state is None:
+        yield from [STATE] if guess.commands else []
+        return
+    place, states = guess.state
+    known = {state: values for state, values in states.items() if state and values}
+    said = ", ".join(f"{state}: {_one_or_all(values)}" for state, values in known.items())
+    yield f"    state: {{{_where(place)}, words: {{{said}}}}}  # a guess: compare it with the device"
+    if states[""]:
+        yield f"    # state: {_one_or_all(states[''])} was heard, too; put it to stopped, moving or fault"
 
 
-def _is_there(topic: str, seen: Seen) -> bool:
-    """True where a device seems to say that it is there."""
-    return bool(PRESENCE.search(topic)) and seen.retained and _says_there(seen) is not None
+def _ends(guess: Guess) -> Iterator[str]:
+    place, told = guess.end_place, dict(guess.ends())
+    if place is None or not told:
+        yield from [NO_END] if guess.commands else []
+        return
+    for key, values in told.items():
+        id = f", id: {_quoted(guess.end_id)}" if guess.end_id else ""
+        why = f", why: {_quoted(guess.end_why)}" if guess.end_why and key == "failed" else ""
+        yield f"    {key}: {{{_where(place)}, equals: {_one_or_all(values)}{id}{why}}}"
+    if "failed" not in told:
+        yield f"    # failed: no failure was heard; write failed: {{{_where(place)}, equals: ...}}"
 
 
-def _says_there(seen: Seen) -> str | None:
-    """The word by which it says that it is there; None for none."""
-    return next((word for word in map(as_text, seen.values) if word in THERE), None)
+def _declared(each: Heard, guess: Guess, names: Mapping[Place, str]) -> Iterator[str]:
+    """The line of a verb in the kind."""
+    values = {_parameter(path): each.values(path) for path in each.parameters}
+    given = "".join(f"{name}: {_listed(of)}, " for name, of in values.items()).rstrip(", ")
+    shown = {name: next(_shows(of, guess, names), "") for name, of in values.items()}
+    sets = ", ".join(f"{fact}: ${name}" for name, fact in shown.items() if fact)
+    effect, takes_s = "process" if guess.state or guess.end_place else "switch", guess.takes_s(each)
+    parts = [f"effect: {effect}", f"with: {{{given}}}" if given else "", f"sets: {{{sets}}}" if sets else ""]
+    takes = 1.0 if takes_s is None else max(0.1, round(takes_s, 1))
+    parts += [f"takes_s: {takes:g}", f"at_most_s: {math.ceil(3 * takes + 2)}"]
+    yield f"      {each.name}: {{{', '.join(filter(None, parts))}}}"
+    if not sets:
+        yield f"      # sets: no fact shows what {each.name} does; if one does, write sets: {{FACT: VALUE}}"
+    if effect == "process":
+        yield f"      # effect: write motion if {each.name} moves something that people may touch"
 
 
-def _names(places: Mapping[tuple[str, str], Seen]) -> dict[tuple[str, str], str]:
+def _shows(values: Sequence[object], guess: Guess, names: Mapping[Place, str]) -> Iterator[str]:
+    """The facts that have taken these values."""
+    wanted = {word(value) for value in values}
+    for place, seen in guess.facts.items():
+        if wanted <= {word(each) for each in seen.values}:
+            yield names[place]
+
+
+def _verbs(verbs: Sequence[Heard], guess: Guess) -> Iterator[str]:
+    if not verbs:
+        yield "    verbs: {}"
+        yield NO_COMMAND
+        return
+    yield "    verbs:"
+    yield from (f"      {each.name}: {{send: [{_sent(each, guess)}]}}" for each in verbs)
+    halts = [_sent(each, guess) for each in guess.commands if each.stops]
+    if halts:
+        yield f"    halt: [{halts[0]}]"
+
+
+def _sent(each: Heard, guess: Guess) -> str:
+    """The message of a command, with names in place of its parameters and of its id."""
+    body: dict[str, object] = {**each.messages[0].values}
+    words: dict[str, object] = {}
+    for path in each.parameters:
+        body[path] = f"{{{_parameter(path)}}}"
+        said = {word(value): value for value in each.values(path) if isinstance(value, str | bool)}
+        words |= {name: value for name, value in said.items() if name != value}
+    if each.id is not None:
+        body[each.id] = "{number}" if all(map(is_number, each.values(each.id))) else "{id}"
+    payload: object = "" if [*body] == [""] else {}
+    for path, value in body.items():
+        payload = put(payload, places(path), value)
+    parts = [f"topic: {_quoted(each.topic)}"]
+    parts += [f"payload: {json.dumps(payload, ensure_ascii=False)}"] if payload != "" else []
+    parts += (
+        [f"words: {{{', '.join(f'{name}: {json.dumps(of)}' for name, of in words.items())}}}"]
+        if words
+        else []
+    )
+    return f"{{{', '.join(parts)}}}"
+
+
+def _parameter(path: str) -> str:
+    return word(path.rpartition(".")[2]) if path else "to"
+
+
+def _listed(values: Sequence[object]) -> str:
+    """The type of a parameter that had these values."""
+    if all(isinstance(value, bool) for value in values):
+        return "bool"
+    words = [word(value) if isinstance(value, str) else as_text(value) for value in values]
+    return f"[{', '.join(words)}]"
+
+
+def _fact(name: str, place: Place, seen: Seen) -> str:
+    return f"      {name}: {{{_where(place)}{_words(seen)}}}"
+
+
+def _where(place: Place) -> str:
+    topic, path = place
+    return f"hear: {_quoted(topic)}" + (f", path: {_quoted(path)}" if path else "")
+
+
+def _names(places: Mapping[Place, Seen]) -> dict[Place, str]:
     """A name for the fact at each place: its last word, with those before it where two would be alike."""
     words = {place: _words_of(*place) for place in places}
-    names: dict[tuple[str, str], str] = {}
+    names: dict[Place, str] = {}
     for place, found in words.items():
         for length in range(1, len(found) + 1):
             name = "_".join(found[-length:])
@@ -143,7 +191,7 @@ def _names(places: Mapping[tuple[str, str], Seen]) -> dict[tuple[str, str], str]
 
 
 def _words_of(topic: str, path: str) -> list[str]:
-    return [word.lower() for word in re.findall(r"[A-Za-z0-9]+", f"{topic}/{path}")]
+    return [part.lower() for part in re.findall(r"[A-Za-z0-9]+", f"{topic}/{path}")]
 
 
 def _type(seen: Seen) -> str:
@@ -151,20 +199,21 @@ def _type(seen: Seen) -> str:
         return "bool"
     if all(is_number(value) for value in seen.values):
         return "int" if all(isinstance(value, int) for value in seen.values) else "number"
-    words = [_word(value) for value in seen.values]
-    return f"[{', '.join(words)}]" if len(set(words)) == len(words) <= MOST_WORDS else "text"
+    said = [word(value) or "none" for value in seen.values]
+    return f"[{', '.join(said)}]" if len(set(said)) == len(said) <= MOST_WORDS else "text"
 
 
 def _words(seen: Seen) -> str:
     if not _type(seen).startswith("["):
         return ""
-    words = ", ".join(f"{_word(value)}: {_quoted(as_text(value))}" for value in seen.values)
-    return f", words: {{{words}}}"
+    said = ", ".join(f"{word(value) or 'none'}: {_quoted(as_text(value))}" for value in seen.values)
+    return f", words: {{{said}}}"
 
 
-def _word(value: object) -> str:
-    return "_".join(re.findall(r"[a-z0-9]+", as_text(value).lower())) or "none"
+def _one_or_all(values: Sequence[object]) -> str:
+    said = [json.dumps(value, ensure_ascii=False) for value in values]
+    return said[0] if len(said) == 1 else f"[{', '.join(said)}]"
 
 
-def _quoted(text: str) -> str:
+def _quoted(text: str | None) -> str:
     return json.dumps(text, ensure_ascii=False)

@@ -21,7 +21,7 @@ def messages(said: Iterable[Said], device: str) -> Iterator[tuple[str, bytes]]:
     for source, path, value in said:
         topic = source.named(device).replace("+", device).replace("#", device)
         if path:
-            whole[topic] = _put(whole.get(topic), places(path), value)
+            whole[topic] = put(whole.get(topic), places(path), value)
         else:
             yield topic, _text(source, value).encode()
     for topic, body in whole.items():
@@ -46,7 +46,7 @@ def _text(source: Source, value: object) -> str:
     return text.join(re.sub(r"\\(.)", r"\1", part) for part in around)
 
 
-def _put(whole: Any, path: tuple[str | int, ...], value: object) -> Any:
+def put(whole: Any, path: tuple[str | int, ...], value: object) -> Any:
     """A body with a value at a path; what is missing on the way is made."""
     if not path:
         return value
@@ -54,8 +54,8 @@ def _put(whole: Any, path: tuple[str | int, ...], value: object) -> Any:
     if isinstance(first, int):
         items = whole if isinstance(whole, list) else []
         items += [None] * (first + 1 - len(items))
-        items[first] = _put(items[first], rest, value)
+        items[first] = put(items[first], rest, value)
         return items
     body = whole if isinstance(whole, dict) else {}
-    body[first] = _put(body.get(first), rest, value)
+    body[first] = put(body.get(first), rest, value)
     return body
