@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 
 import pytest
@@ -12,7 +13,8 @@ from arboleda.dispatch.ledger import Entry, Feed, State
 from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Stop, StopMode
-from arboleda.model.messages import Failure, Reason
+from arboleda.model.messages import Failure, Reason, Report
+from arboleda.model.refusals import STOPPED
 from arboleda.model.sentence import OWN
 
 from .test_dispatcher import dispatcher as dispatcher
@@ -59,6 +61,20 @@ def test_who_refuses_for_a_stop_that_it_does_not_report_takes_no_other_command(
     dispatcher.booking.book(moving(dispatcher), verdict(Feed.REJECTED, Reason.STOPPED), 100.2)
     obstacle = dispatcher.beliefs["ra1"].obstacle(was=False)
     assert obstacle is not None and obstacle.reason is Reason.STOPPED
+
+
+def test_so_does_who_refuses_what_its_facts_had_proven_and_its_refusal_counts_once(
+    dispatcher: Dispatcher,
+) -> None:
+    switch, belief = dispatcher.send(SWITCH, "sis_a", "gripping", 100.1), dispatcher.beliefs["ra1"]
+    dispatcher.booking.book(switch, CommandVerdict(feed=Feed.DONE), 100.2)
+    refused = Report(at=100.3, robot="ra1", rejected=switch.command.id, refusal=STOPPED)
+    dispatcher.report(refused, 100.3)
+    obstacle = belief.obstacle(was=False)
+    assert obstacle is not None and obstacle.reason is Reason.STOPPED
+    belief.barred = False
+    dispatcher.report(replace(refused, at=100.6), 100.6)
+    assert not belief.barred
 
 
 def test_the_fact_of_a_failed_switch_is_doubted_until_another_one_is_done(dispatcher: Dispatcher) -> None:

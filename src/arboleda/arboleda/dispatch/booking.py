@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from arboleda.model import refusals
 from arboleda.model.commands import FRESH_S, Command, Home, Motion, StopMode, Switch, Work
 from arboleda.model.grips import Grip
-from arboleda.model.messages import Failure, MotionState, Reason
+from arboleda.model.messages import Failure, MotionState, Reason, Report
 from arboleda.model.sentence import BOTH, Phrase, Sentence
 
 from .belief import Belief
@@ -56,6 +57,7 @@ class Booking:
         self._unfinished = unfinished
         self._whereabouts = whereabouts
         self._limits = limits
+        self._proven: dict[str, str] = {}  # by robot, the last command that is done
 
     def book(self, entry: Entry, verdict: CommandVerdict, now: float) -> None:
         """Feed the ledger with a verdict, and halt a robot whose motion failed and may still be under way."""
@@ -86,6 +88,15 @@ class Booking:
         verdict = _overdue(entry)
         entry.settled = verdict.feed is Feed.DONE
         self.book(entry, verdict, now)
+
+    def refused_after_all(self, report: Report) -> None:
+        """Note that a robot is stopped, by its refusal of a command that its facts had proven before."""
+        robot = report.robot
+        if report.refusal != refusals.STOPPED or report.rejected != self._proven.get(robot):
+            return
+        del self._proven[robot]
+        belief = self._beliefs[robot]
+        belief.barred |= belief.state is not MotionState.STOP_LATCHED
 
     def give_up(self, cell: str, failure: Failure, now: float) -> None:
         """Fail every open command of a cell, and halt what moves, since nobody judges them any more."""
@@ -130,6 +141,7 @@ class Booking:
         belief.barred |= stopped and belief.state is not MotionState.STOP_LATCHED
 
     def _done(self, command: Command) -> None:
+        self._proven[command.robot] = command.id
         if doubtful := self.doubtful.get(command.robot):
             doubtful.difference_update(name for name, _ in command.sets)
         if command.robot in self._unfinished.by_device:

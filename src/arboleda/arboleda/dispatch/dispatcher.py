@@ -301,6 +301,8 @@ class Dispatcher:
                 if verdict.failure is not None:
                     verdict = self._with_lateness(verdict, verdict.failure, entry, belief)
                 self.booking.book(entry, verdict, now)
+        if report.rejected is not None:
+            self.booking.refused_after_all(report)
         if self.unnamed.ids.get(name):
             self.unnamed.hear(report)
         if name in self.unfinished.by_device:

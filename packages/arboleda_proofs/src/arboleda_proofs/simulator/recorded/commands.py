@@ -136,8 +136,13 @@ class Commands:
             sent.late_s = late_s
 
     def hear(self, report: Report, known: KnownRobot) -> None:
-        """Take in a report that names the last rejected command."""
-        rejected = self.open.get(report.rejected or "")
+        """Take in a report that names the last rejected command.
+
+        The last one may be over for the plant, as facts have proven it.
+        """
+        rejected, last = self.open.get(report.rejected or ""), self.last.get(report.robot)
+        if rejected is None and last is not None and last.command.id == report.rejected and not last.rejected:
+            rejected = last if last.state is State.DONE else None
         if rejected is not None:
             rejected.rejected = True
             known.barred |= report.refusal == "paro" and known.state is not MotionState.STOP_LATCHED
