@@ -13,6 +13,7 @@ from rich.text import Text
 from arboleda.model.counting import counted
 from arboleda_proofs.simulator.faults.titles import title
 from arboleda_proofs.simulator.findings import Finding
+from arboleda_proofs.simulator.people import IN_VAIN
 
 from .screen import WIDEST, ends_of, say_of
 from .tally import Tally
@@ -106,5 +107,9 @@ def verdict(tally: Tally) -> Text:
     if tally.findings:
         share = counted(tally.findings.total(), "finding")
         return Text(f"FOUND: {share} in recipes, where nothing had gone wrong", style="bold red")
+    if tally.in_vain:
+        where = f"{counted(tally.in_vain, 'seed')} of {len(tally.rows):,}"
+        why = f"{IN_VAIN} tasks of each cell in a row told no device to do anything in {where}"
+        return Text(f"NOTHING TRIED: {why}; look at the outcomes of the tasks", style="bold red")
     checks = f" {short(tally.checks)} checks of" if tally.checks else ""
     return Text(f"HELD:{checks} {counted(len(tally.judged), 'invariant')}", style="bold green")

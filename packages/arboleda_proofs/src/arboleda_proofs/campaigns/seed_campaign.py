@@ -54,7 +54,7 @@ class SeedCampaign:
         try:
             self._simulate(jobs)
             self._shrink(jobs)
-            status = BROKEN if self._tally.broken or self._tally.findings else HELD
+            status = HELD if self._tally.holds else BROKEN
         except KeyboardInterrupt:
             self._say("interrupted; so far:", "yellow")
         self._report()

@@ -76,6 +76,7 @@ def _run(request: Request, seed: int) -> SeedRow:
     tally = Tally(setting=request.setting)
     tally.add(result)
     found = "; ".join(map(str, report.findings(tally))) if result.findings else None
+    found = str(report.verdict(tally)) if result.in_vain and found is None else found
     broken = found if result.broken is None else str(result.broken)
     return SeedRow(seed=seed, digest=result.digest, broken=broken, cycles=result.cycles)
 

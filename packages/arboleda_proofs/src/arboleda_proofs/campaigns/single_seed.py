@@ -43,7 +43,7 @@ def run(request: Request, console: Console, *, trace: bool, record: Path | None,
     for finding in report.findings(tally):
         console.print(finding, soft_wrap=True)
     console.print(report.verdict(tally), soft_wrap=True)
-    return BROKEN if result.broken or result.findings else HELD
+    return HELD if tally.holds else BROKEN
 
 
 def _flown(request: Request, *, trace: bool, record: Path, lines: list[str]) -> Result:

@@ -24,6 +24,7 @@ class Tally:
     findings: Counter[Finding] = field(default_factory=Counter)
     as_written: Counter[Finding] = field(default_factory=Counter)
     cycles: int = 0
+    in_vain: int = 0  # seeds in which no task told a device to do anything
     checks: int = 0
     judged: set[str] = field(default_factory=lambda: {NO_EXCEPTION})
     seconds: float = 0.0
@@ -33,12 +34,18 @@ class Tally:
         """The first seed that broke an invariant, in the order of seeds."""
         return self.broken[min(self.broken)] if self.broken else None
 
+    @property
+    def holds(self) -> bool:
+        """True where the seeds tried something, and nothing in them was wrong."""
+        return not (self.broken or self.findings or self.in_vain)
+
     def add(self, result: Result) -> None:
         plant = self.setting.plants.of(result.seed)
         faults = Counter(fault.kind for fault in result.faults)
         self.faults.update(faults)
         self.outcomes.update(result.outcomes)
         self.cycles += result.cycles
+        self.in_vain += result.in_vain
         _take(self.findings, result.findings, result.seed)
         _take(self.as_written, result.as_written, result.seed)
         self.checks += result.checks.total()

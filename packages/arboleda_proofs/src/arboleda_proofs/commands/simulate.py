@@ -37,8 +37,8 @@ arboleda simulate --faults out.json --trace  what broke in there, with the fault
 arboleda simulate --faults night.yaml        what a plant did: arboleda record export night.yaml
 arboleda simulate --faults unlike.yaml       what its devices did: arboleda record unlike --to unlike.yaml
 
-Exit status: 0 every invariant held, 1 one was broken, or a task failed where nothing had
-gone wrong, 2 bad input, 130 Ctrl-C; 1 where Ctrl-C ends the search for
+Exit status: 0 every invariant held, 1 one was broken, a task failed where nothing had gone
+wrong, or no task did anything, 2 bad input, 130 Ctrl-C; 1 where Ctrl-C ends the search for
 fewer faults in a broken seed."""
 
 Plant = Annotated[

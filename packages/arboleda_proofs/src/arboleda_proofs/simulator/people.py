@@ -28,6 +28,7 @@ from .cycles import has_told
 from .recorded.zone_users import running
 from .task_words import task_words
 
+IN_VAIN = 100  # tasks in a row of a cell that end without a cycle, or are refused
 WAITING = 2  # tasks that the customers of a cell keep in its queue
 REMEMBERED = 24  # of their tasks
 SEEN_TO = {GETS_PART.key: HANDS[Hand.PUT_IN], GETS_ROOM.key: HANDS[Hand.TAKE_OUT]}
@@ -63,6 +64,7 @@ class Customers:
         self._texts: dict[str, str] = {}  # by token, of those requests
         self.cycles = 0
         self.outcomes: dict[str, int] = {}
+        self._in_vain = dict.fromkeys((cell.name for cell in world.model.cells), 0)
         world.watchers.append(self._look)
         for cell in world.model.cells:
             for _ in range(WAITING):
@@ -71,6 +73,11 @@ class Customers:
     def go(self) -> None:
         """Bring no more."""
         self._gone = True
+
+    @property
+    def gave_up(self) -> bool:
+        """True once many tasks in a row of each cell have come to nothing."""
+        return all(number >= IN_VAIN for number in self._in_vain.values())
 
     def _look(self) -> None:
         moment = self._world.moment
@@ -93,6 +100,7 @@ class Customers:
             return
         if answer.state is TaskState.REFUSED:
             self._theirs.pop(answer.text.rpartition("#")[2], None)
+            self._in_vain[cell.name] += 1
         self._come(cell)
 
     def _come_back(self) -> None:
@@ -129,7 +137,10 @@ class Customers:
             self._count(change, since=self._started.pop(change.task))
 
     def _count(self, change: TaskChanged, *, since: float) -> None:
-        self.cycles += has_told(self._world, change.cell, since)
+        told = has_told(self._world, change.cell, since)
+        self.cycles += told
+        if change.cell is not None:
+            self._in_vain[change.cell] = 0 if told else self._in_vain[change.cell] + 1
         outcome = change.reason.value if change.reason else change.state.value
         self.outcomes[outcome] = self.outcomes.get(outcome, 0) + 1
 

@@ -39,6 +39,7 @@ class Result:
     outcomes: dict[str, int] = field(default_factory=dict)
     checks: Counter[str] = field(default_factory=Counter)
     minutes: int = 0
+    in_vain: bool = False  # it ended because no task of any cell told a device to do anything
     broken: BrokenInvariant | None = None
     findings: Counter[Finding] = field(default_factory=Counter)  # of a run without faults
     as_written: Counter[Finding] = field(default_factory=Counter)  # failures that recipes ask for in it
@@ -47,6 +48,8 @@ class Result:
 
 class Simulation:
     """A world with people and faults; `run` goes on for so many cycles, or so many seconds, and then to rest.
+
+    Cycles that do not come are not waited for once many tasks in a row have told no device to do anything.
 
     `plan` gives the faults of each minute; the same model, seed and plan give the same `digest`. With a
     `script` people do what it says and no tasks are drawn: the run ends after it, once its tasks have ended.
@@ -128,7 +131,10 @@ class Simulation:
             patience = PATIENCE + math.ceil(self._script.ends / MINUTE_S)
             return self._people.over or self.result.minutes >= patience
         wanted = cycles or 0
-        return self._people.cycles >= wanted or self.result.minutes >= PATIENCE + wanted
+        if isinstance(self._people, Customers) and self._people.gave_up:
+            self.result.in_vain = True
+        is_long = self.result.minutes >= PATIENCE + wanted
+        return self.result.in_vain or is_long or self._people.cycles >= wanted
 
     def _minute(self, minute: int, seconds: float) -> None:
         self.result.minutes += 1

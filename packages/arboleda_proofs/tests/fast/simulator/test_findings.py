@@ -233,6 +233,18 @@ def test_a_campaign_says_them_and_they_are_in_its_file(file: Path) -> None:
     )
 
 
+def test_tasks_that_tell_no_device_anything_end_a_seed_and_are_told(file: Path) -> None:
+    (file.parent / "recipes.py").write_text(RECIPE.replace("mover.take_out(), ", ""))
+    request = Request(plant=file, seeds=1, cycles=1000, faults="few")
+    tally = Tally(setting=request.setting)
+    result = request.setting.run(1)
+    tally.add(result)
+    assert result.in_vain and result.cycles == 0 and result.minutes < 5 and not tally.holds
+    assert "100 tasks of each cell in a row told no device to do anything in 1 seed of 1;" in str(
+        report.verdict(tally)
+    )
+
+
 @pytest.mark.long
 def test_a_campaign_that_found_something_ends_with_1(file: Path, tmp_path: Path) -> None:
     request, console = Request(plant=file, seeds=1, cycles=2, faults="none"), Console(file=StringIO())

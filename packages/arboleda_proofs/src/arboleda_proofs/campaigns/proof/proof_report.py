@@ -148,7 +148,8 @@ def pairs_line(pairs: PairTally, breaches: int) -> Text:
 def verdict(tally: ProofTally, total: int, *, bad_calm: int) -> Text:
     """The last line: what held, of how much."""
     runs, breaches = tally.runs, len(tally.breaches())
-    of = f"{runs:,} of {counted(total, 'run')}"
+    untried = "no fault was tried, as no task comes to its end without one"
+    of = f"{runs:,} of {counted(total, 'run')}" if total else untried
     if breaches or bad_calm:
         what = [f"{breaches:,} {'breach' if breaches == 1 else 'breaches'}"] if breaches else []
         what += [f"{counted(bad_calm, 'task')} without any fault"] if bad_calm else []
