@@ -25,7 +25,8 @@ OF_PROOFS = PACKAGES["arboleda_proofs"]
 OF_TREES = PACKAGES["arboleda_trees"]
 AT_A_START = {  # of a driver, which `check` says, too
     *("addresses.py", "checks.py", "health.py", "limits.py", "nodes.py", "paths.py", "port.py", "reading.py"),
-    *("keys.py", "registers.py", "sent.py", "settings.py", "stream.py", "types.py", "variables.py"),
+    *("keys.py", "registers.py", "sent.py", "settings.py", "stream.py", "types.py", "unheard_of.py"),
+    "variables.py",
 }
 
 

@@ -49,7 +49,7 @@ class Errand:
         self.seconds: dict[str, float] = {}
         self._finished = finished
         self._answer_count = 0
-        self._blocked: dict[str | None, Sentence | None] = {}  # by cell, what is said to tasks that wait there
+        self._blocked: dict[str | None, Sentence | None] = {}  # by cell, why tasks wait there
         self._is_reported = False
         self._started: dict[str, float] = {}
         self._lock = threading.Lock()
@@ -127,7 +127,8 @@ class Errand:
 
     def _is_of_before(self, cell: dict[str, Any]) -> bool:
         """True for a cell that is held with a task of an earlier start, or of another client."""
-        return bool(cell["task"]) and cell["state"] == CellState.HELD and cell["task"]["id"] not in self.results
+        task = cell["task"]
+        return task is not None and cell["state"] == CellState.HELD and task["id"] not in self.results
 
     def _say_what_is_missing(self) -> None:
         """Replace the sentences of tasks that wait by those that are true now."""
