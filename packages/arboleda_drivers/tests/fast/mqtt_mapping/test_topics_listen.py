@@ -106,6 +106,28 @@ def test_what_cannot_be_known_is_said_where_it_belongs(said: list[Said], told: s
     assert sum(told in line for line in lines(said)) == 1
 
 
+def test_a_topic_without_a_telling_name_is_of_commands_where_each_message_has_an_answer() -> None:
+    def speed(rpm: int, phase: str) -> dict[str, object]:
+        return {"rpm": rpm, "phase": phase}
+
+    proposed = lines(
+        [
+            (0.0, "lab/shaker/info", speed(0, "standstill")),
+            (1.0, "lab/shaker/knob", {"n": 1, "rpm": 300}),
+            (1.1, "lab/shaker/info", speed(300, "spinning")),
+            (4.1, "lab/shaker/info", speed(300, "standstill")),
+            (4.2, "lab/shaker/res", {"n": 1, "verdict": "ok"}),
+            (6.0, "lab/shaker/knob", {"n": 2, "rpm": 1200}),
+            (6.1, "lab/shaker/res", {"n": 2, "verdict": "jumped"}),
+        ]
+    )
+    sent = 'topic: "lab/shaker/knob", payload: {"n": "{number}", "rpm": "{rpm}"}'
+    assert f"      knob: {{send: [{{{sent}}}]}}" in proposed
+    assert '    done: {hear: "lab/shaker/res", path: "verdict", equals: "ok", id: "n"}' in proposed
+    assert '    # failed: "jumped" was heard there, too; put it to accepted, done or failed' in proposed
+    assert "      info: int" not in proposed and "      rpm: int" in proposed
+
+
 def test_the_name_of_a_bridge_hides_no_fact() -> None:
     proposed = lines([(1.0, "zigbee2mqtt/door", {"contact": True, "linkquality": 90})])
     assert "      contact: bool" in proposed and "      # linkquality: int" in proposed

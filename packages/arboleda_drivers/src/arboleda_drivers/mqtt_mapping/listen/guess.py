@@ -16,6 +16,7 @@ from . import words
 from .hearing import Listening, Message, Place, Seen
 
 LATER_S = 60.0  # in which what follows a command belongs to it
+SOON_S = 2.0  # in which a device begins with a command, or refuses it
 MOST_WORDS = 8  # that a fact may have; more are any text
 ENDS = {"accepted": words.ACCEPTED, "done": words.DONE, "failed": words.FAILED}
 
@@ -44,16 +45,6 @@ class Heard:
         return [*dict.fromkeys(each.values[path] for each in self.messages)]
 
     @property
-    def id(self) -> str | None:
-        """The path of the id or number of each command; None where there is none."""
-        return next((path for path in self.paths if words.ID.search(path)), None)
-
-    @property
-    def parameters(self) -> list[str]:
-        """The paths of values that differ from message to message; "" for a text alone."""
-        return [path for path in self.paths if path != self.id and len(self.values(path)) > 1]
-
-    @property
     def stops(self) -> bool:
         """True where it tells a device to stop."""
         said = {words.word(value) for each in self.messages for value in each.values.values()}
@@ -79,9 +70,8 @@ class Guess:
     def commands(self) -> list[Heard]:
         """The commands that were heard, one for each verb."""
         found: dict[tuple[object, ...], Heard] = {}
-        for message in self._heard.messages:
-            if not words.COMMAND.search(message.topic) or message.topic in self._answers:
-                continue
+        topics = {each.topic for each in self._heard.messages if self._is_told_on(each.topic)}
+        for message in (each for each in self._heard.messages if each.topic in topics):
             verb = next((path for path in message.values if words.VERB.search(path)), None)
             stops = verb is None and words.STOPS & {words.word(each) for each in message.values.values()}
             named = None if verb is None else message.values[verb]
@@ -90,15 +80,36 @@ class Guess:
             found.setdefault(key, Heard(topic=message.topic, verb=at)).messages.append(message)
         return [*found.values()]
 
+    def _is_told_on(self, topic: str) -> bool:
+        """True for a topic of commands: by its name, or as each of its messages has an answer."""
+        if topic in self._says:
+            return False
+        if words.COMMAND.search(topic) or words.word(topic.rpartition("/")[2]) in words.STOPS:
+            return True
+        times = [each.at for each in self._heard.messages if each.topic == topic and not each.retained]
+        answered = [any(at <= then <= at + SOON_S for then in self._reactions) for at in times]
+        return bool(times) and all(answered)
+
     @cached_property
-    def _answers(self) -> set[str]:
-        """Topics that are named like those of commands, and tell ends or a state."""
+    def _says(self) -> set[str]:
+        """Topics on which a device tells its presence, an end, or that it moves."""
         told = words.DONE | words.FAILED | words.ACCEPTED
-        return {
-            topic
-            for (topic, _), seen in self._heard.places.items()
-            if any(words.word(each) in told for each in seen.values)
-        }
+        found = set() if self.presence is None else {self.presence[0][0]}
+        for (topic, _), seen in self._heard.places.items():
+            if any(words.word(each) in told or words.is_moving(each) for each in seen.values):
+                found.add(topic)
+        return found
+
+    @cached_property
+    def _reactions(self) -> list[float]:
+        """Times at which it told an end, or began to move."""
+        found = []
+        for place, seen in self._heard.places.items():
+            told = words.DONE | words.FAILED | words.ACCEPTED
+            ends = place[0] in self._says and any(words.word(each) in told for each in seen.values)
+            of_end = (each.at for each in self._heard.messages if ends and each.topic == place[0])
+            found += [*of_end, *(at for at, value in self._heard.course(place) if words.is_moving(value))]
+        return found
 
     @cached_property
     def state(self) -> tuple[Place, dict[str, list[object]]] | None:
@@ -163,11 +174,43 @@ class Guess:
                 if said := [value for value in values if words.word(value) in known]:
                     yield key, said
 
+    @property
+    def unclear_ends(self) -> list[object]:
+        """Values at the place of ends of which nobody knows what they say."""
+        if self.end_place is None:
+            return []
+        known = [value for _, values in self.ends() for value in values]
+        return [value for value in self._heard.places[self.end_place].values if value not in known]
+
+    def id_of(self, command: Heard) -> str | None:
+        """The path of the id or number of each command: one that ends name, else one that is called so."""
+        for path in command.paths:
+            values = [as_text(each.values[path]) for each in command.messages]
+            if self._echoes({*values}) is not None and len({*values}) == len(values):
+                return path
+        return next((path for path in command.paths if words.ID.search(path)), None)
+
+    def parameters(self, command: Heard) -> list[str]:
+        """The paths of values that differ from message to message; "" for a text alone."""
+        id = self.id_of(command)
+        return [path for path in command.paths if path != id and len(command.values(path)) > 1]
+
     @cached_property
     def end_id(self) -> str | None:
         """The path at which ends name their command; None for none."""
-        sent = {as_text(value) for each in self.commands if each.id for value in each.values(each.id)}
-        return next((path for path in self._beside_end if self._says(path) & sent), None)
+        for command in self.commands:
+            if (id := self.id_of(command)) is not None:
+                return self._echoes({as_text(each) for each in command.values(id)})
+        return None
+
+    def _echoes(self, sent: set[str]) -> str | None:
+        """The path beside the end at which these values come back, and no others."""
+        for path in self._beside_end:
+            assert self.end_place is not None
+            told = {as_text(each) for each in self._heard.places[self.end_place[0], path].values}
+            if told <= sent:
+                return path
+        return None
 
     @property
     def end_why(self) -> str | None:
@@ -178,10 +221,6 @@ class Guess:
     def _beside_end(self) -> list[str]:
         end = self.end_place
         return [] if end is None else [path for topic, path in self._heard.places if topic == end[0] != path]
-
-    def _says(self, path: str) -> set[str]:
-        assert self.end_place is not None
-        return {as_text(each) for each in self._heard.places[self.end_place[0], path].values}
 
     @cached_property
     def facts(self) -> dict[Place, Seen]:

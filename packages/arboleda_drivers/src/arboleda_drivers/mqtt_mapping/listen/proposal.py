@@ -92,13 +92,16 @@ def _ends(guess: Guess) -> Iterator[str]:
         id = f", id: {_quoted(guess.end_id)}" if guess.end_id else ""
         why = f", why: {_quoted(guess.end_why)}" if guess.end_why and key == "failed" else ""
         yield f"    {key}: {{{_where(place)}, equals: {_one_or_all(values)}{id}{why}}}"
-    if "failed" not in told:
+    unclear = guess.unclear_ends
+    if unclear:
+        yield f"    # failed: {_one_or_all(unclear)} was heard there, too; put it to accepted, done or failed"
+    elif "failed" not in told:
         yield f"    # failed: no failure was heard; write failed: {{{_where(place)}, equals: ...}}"
 
 
 def _declared(each: Heard, guess: Guess, names: Mapping[Place, str]) -> Iterator[str]:
     """The line of a verb in the kind."""
-    values = {_parameter(path): each.values(path) for path in each.parameters}
+    values = {_parameter(path): each.values(path) for path in guess.parameters(each)}
     given = "".join(f"{name}: {_listed(of)}, " for name, of in values.items()).rstrip(", ")
     shown = {name: next(_shows(of, guess, names), "") for name, of in values.items()}
     sets = ", ".join(f"{fact}: ${name}" for name, fact in shown.items() if fact)
@@ -114,10 +117,10 @@ def _declared(each: Heard, guess: Guess, names: Mapping[Place, str]) -> Iterator
 
 
 def _shows(values: Sequence[object], guess: Guess, names: Mapping[Place, str]) -> Iterator[str]:
-    """The facts that have taken these values."""
+    """The facts that have taken at least two of these values, or all."""
     wanted = {word(value) for value in values}
     for place, seen in guess.facts.items():
-        if wanted <= {word(each) for each in seen.values}:
+        if len(wanted & {word(each) for each in seen.values}) >= min(2, len(wanted)):
             yield names[place]
 
 
@@ -137,12 +140,12 @@ def _sent(each: Heard, guess: Guess) -> str:
     """The message of a command, with names in place of its parameters and of its id."""
     body: dict[str, object] = {**each.messages[0].values}
     words: dict[str, object] = {}
-    for path in each.parameters:
+    for path in guess.parameters(each):
         body[path] = f"{{{_parameter(path)}}}"
         said = {word(value): value for value in each.values(path) if isinstance(value, str | bool)}
         words |= {name: value for name, value in said.items() if name != value}
-    if each.id is not None:
-        body[each.id] = "{number}" if all(map(is_number, each.values(each.id))) else "{id}"
+    if (id := guess.id_of(each)) is not None:
+        body[id] = "{number}" if all(map(is_number, each.values(id))) else "{id}"
     payload: object = "" if [*body] == [""] else {}
     for path, value in body.items():
         payload = put(payload, places(path), value)

@@ -19,17 +19,18 @@ STOPPED = _all(
 MOVING = _all("busy run move work active print clean dose executing started")
 FAULT = _all("fault error alarm failed jammed stuck estop broken")
 DONE = _all("done finished complete completed success succeeded ok")
-FAILED = _all("failed fail failure error broke broken aborted rejected refused denied jammed timeout")
+FAILED = _all("failed fail failure error err nok broke broken aborted rejected refused denied jammed timeout")
 ACCEPTED = _all("accepted taken started ack received queued")
-STOPS = _all("stop halt abort cancel")
+STOPS = _all("stop halt abort cancel kill estop")
 
 PRESENCE = re.compile(r"lwt|availab|online|status|connect|alive|presence|here|birth|will", re.IGNORECASE)
 COMMAND = re.compile(
-    r"(^|/)(cmnd|cmd|commands?|set|do|orders?|requests?|goto|control|action|rpc|call|api)(/|$)", re.IGNORECASE
+    r"(^|/)(cmnd|cmd|commands?|set|do|orders?|requests?|req|goto|control|action|rpc|call|api)(/|$)",
+    re.IGNORECASE,
 )
 ID = re.compile(r"(^|\.)(id|seq|nr|num|number|cid|token|msg_?id|task_?id|correlation_?id)$", re.IGNORECASE)
 VERB = re.compile(r"(^|\.)(act|action|cmd|command|verb|method|op|operation|type)$", re.IGNORECASE)
-WHY = re.compile(r"(^|\.)(why|reason|text|message|note|error|detail|info)$", re.IGNORECASE)
+WHY = re.compile(r"(^|\.)(why|reason|cause|text|message|note|error|detail|info)$", re.IGNORECASE)
 ITSELF = re.compile(
     r"rssi|uptime|ssid|\bmac|\bip\b|version|heap|lqi|linkquality|time|firmware|\bfw|vcc|sleep|mqtt|wifi|loadavg",
     re.IGNORECASE,
