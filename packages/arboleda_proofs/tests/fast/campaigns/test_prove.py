@@ -196,6 +196,16 @@ def test_runs_that_end_as_soon_as_the_rest_is_known_have_the_outcomes_of_whole_o
     assert back > 0
 
 
+def test_a_recipe_that_looks_at_a_fact_keeps_no_run_from_being_as_the_calm_one_again(plant: Path) -> None:
+    plant.write_text(PRESS)
+    looks = STAMP.replace("press.press()", 'press.says(ram="up"), press.press()')  # a step that keeps its device
+    assert looks != STAMP
+    (plant.parent / "small.py").write_text(looks)
+    model, calm = calm_of(plant)
+    fault = Fault(kind="duplicate", at=2.5, seconds=0.5, target="press", word="up")
+    assert run_one(model, calm, fault, course=course_of(model, calm)).joined_at is not None
+
+
 @pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     ("kind", "word"), [("mute", ""), ("duplicate", "up"), ("reorder", "up"), ("lost_queue", "")]

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from arboleda.extension import ArboledaError
 from arboleda.model.plant_model import PlantModel
 
-from .calm import Calm
+from .calm import Calm, calm_play
 from .likeness import Likeness, is_like, likeness
 from .outcome import Run
-from .stage import ASKED_AT_S, Rejoined, Stage
+from .stage import Rejoined, Stage
 
 EVERY_S = 0.5
 
@@ -33,8 +34,10 @@ def course_of(model: PlantModel, calm: Calm) -> Course:
             points[stage.world.now] = (likeness(stage.world), _done(stage))
 
     stage.on_its_way = look
-    stage.play(ASKED_AT_S, lambda: None, expected=calm.state, commands=calm.commands, lasts_s=calm.lasts_s)
-    return Course(run=calm.run, points=points)
+    run = calm_play(stage)
+    if run != calm.run:
+        raise ArboledaError(f"{calm.scenario.name} went otherwise as it was run again: {run.outcome}")
+    return Course(run=run, points=points)
 
 
 def rejoin(stage: Stage, course: Course) -> None:

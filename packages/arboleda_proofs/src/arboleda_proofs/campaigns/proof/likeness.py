@@ -114,6 +114,8 @@ def _words(world: World) -> Iterator[int]:
 
 def _owner(part: Any) -> str:
     """The name of the robot that something is about; empty where it does not say."""
+    if hasattr(type(part), "__getattr__"):  # a handle of a recipe: it makes its attributes up
+        return ""
     robot = getattr(part.command if isinstance(part, Entry) else part, "robot", "")
     return robot.name if isinstance(robot, Robot) else robot if isinstance(robot, str) else ""
 
