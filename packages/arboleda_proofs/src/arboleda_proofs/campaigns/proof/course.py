@@ -9,11 +9,13 @@ from arboleda.extension import ArboledaError
 from arboleda.model.plant_model import PlantModel
 
 from .calm import Calm, calm_play
-from .likeness import Likeness, is_like, likeness
+from .likeness import Likeness, first_difference, likeness
 from .outcome import Run
 from .stage import Rejoined, Stage
 
-EVERY_S = 0.5
+EVERY_S = 0.5  # between two points
+MOST_POINTS = 48  # of a course: a point takes as long as some seconds of a run
+WORDS = 400  # of a likeness, which take as long to find as the run to the next point
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,9 +30,12 @@ def course_of(model: PlantModel, calm: Calm) -> Course:
     """The course of a calm run, which is run again for it."""
     stage = Stage(model, calm.scenario)
     points: dict[float, tuple[Likeness, object]] = {}
+    every_s, due = max(EVERY_S, calm.lasts_s / MOST_POINTS), 0.0
 
     def look() -> None:
-        if not points or stage.world.now >= max(points) + EVERY_S:
+        nonlocal due
+        if stage.world.now >= due:
+            due = stage.world.now + every_s
             points[stage.world.now] = (likeness(stage.world), _done(stage))
 
     stage.on_its_way = look
@@ -47,12 +52,20 @@ def rejoin(stage: Stage, course: Course) -> None:
     judges excuses more after a fault, not less.
     """
 
+    passed_over = 0  # points to come at which nothing is compared: that took too long for what it told
+
     def look() -> None:
+        nonlocal passed_over
         point = course.points.get(stage.world.now)
         if point is None or not _is_over(stage) or _done(stage) != point[1]:
             return
-        if is_like(stage.world, point[0]):
+        if passed_over:
+            passed_over -= 1
+            return
+        number = first_difference(stage.world, point[0])
+        if number is None:
             raise Rejoined(course.run)
+        passed_over = number // WORDS
 
     stage.on_its_way = look
 
