@@ -20,6 +20,7 @@ from ..setting import rules
 from ..words import fault_said
 from .calm import Calm
 from .checks import Check, tried_checks
+from .equal_cells import notes
 from .instants import Instant
 from .moment import Moment
 from .outcome import MOST_ACTS, End
@@ -109,6 +110,7 @@ def _amount(proof: ProofPage) -> Iterator[str]:
     only = f" {_kinds(kinds)}" if kinds else ""
     alone = _each("alone", share=f"{proof.tally.alone:.1%}") if done else ""
     yield f"<p>{amount}{only} {alone}</p>"
+    yield from (f"<p>{_found(note)}</p>" for note in notes(proof.tally.proof.model))
     if proof.pairs is not None:
         counts = {"done": f"{proof.pairs.runs:,}", "total": f"{proof.pairs.pairs.total:,}"}
         yield f"<p>{_each('pairs', **counts)}</p>"

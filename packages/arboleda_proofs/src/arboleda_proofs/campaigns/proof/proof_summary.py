@@ -15,6 +15,7 @@ from arboleda.plant_check.unstated import unknowns
 
 from .calm import Calm
 from .checks import Check, tried_checks
+from .equal_cells import equal_cells
 from .outcome import plain
 from .pairs import PairTally
 from .proof_tally import Case, ProofTally
@@ -46,14 +47,16 @@ def summary(
     pairs: PairTally | None = None,
 ) -> dict[str, Any]:
     """The whole answer; `mended` has what the runs without faults found, and what would mend it."""
+    model = tally.proof.model
     return {
         "arboleda": __version__,
         "plant": str(plant) if plant else None,
         "complete": complete,
         "runs": {"done": tally.runs, "of": total, "represented": tally.proof.represented},
         "pairs": None if pairs is None else {"done": pairs.runs, "of": pairs.pairs.total},
+        "proved_as": {name: first for name, first in equal_cells(model).items() if name != first},
         "alone": round(tally.alone, 4),
-        "unknown": list(unknowns(tally.proof.model)),
+        "unknown": list(unknowns(model)),
         **mended.plain,
         "scenarios": [_scenario(each) for each in calm],
         "table": [_row(*each) for each in tally.table().items()],
