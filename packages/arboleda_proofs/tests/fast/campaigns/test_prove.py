@@ -28,9 +28,10 @@ from arboleda_proofs.campaigns.proof.course import course_of
 from arboleda_proofs.campaigns.proof.forks import run_all, run_one
 from arboleda_proofs.campaigns.proof.instants import Instant, Side
 from arboleda_proofs.campaigns.proof.outcome import End
-from arboleda_proofs.campaigns.proof.proof import Proof, Proved
+from arboleda_proofs.campaigns.proof.proof import MOST, Proof, Proved
 from arboleda_proofs.campaigns.proof.scenario import scenarios
 from arboleda_proofs.campaigns.proof.single_faults import single_faults
+from arboleda_proofs.campaigns.proof.spent import Spent
 from arboleda_proofs.simulator.faults import Fault
 from arboleda_proofs.testing import Sim
 
@@ -198,7 +199,7 @@ def test_runs_that_end_as_soon_as_the_rest_is_known_have_the_outcomes_of_whole_o
 
 def test_a_recipe_that_looks_at_a_fact_keeps_no_run_from_being_as_the_calm_one_again(plant: Path) -> None:
     plant.write_text(PRESS)
-    looks = STAMP.replace("press.press()", 'press.says(ram="up"), press.press()')  # a step that keeps its device
+    looks = STAMP.replace("press.press()", 'press.says(ram="up"), press.press()')  # which keeps its device
     assert looks != STAMP
     (plant.parent / "small.py").write_text(looks)
     model, calm = calm_of(plant)
@@ -515,6 +516,31 @@ def test_running_without_faults_takes_at_most_half_of_the_budget_and_what_is_lef
     )
     assert "HELD in 12 of 24 runs (50%): a sample" in said and "HELD: all" not in said
     assert not summary(plant)["complete"] and len(summary(plant)["scenarios"]) == 1
+
+
+def test_runs_that_have_begun_are_given_up_soon_after_the_budget(
+    plant: Path, prove: Prove, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now = [0.0]
+
+    def slow(*arguments: Any, **options: Any) -> Any:
+        now[0] += 4.0
+        return run_one(*arguments, **options)
+
+    monkeypatch.setattr(forks, "run_one", slow)
+    clock = SimpleNamespace(monotonic=lambda: now[0], process_time=lambda: 0.0)
+    monkeypatch.setattr(proof_campaign, "time", clock)
+    assert f"HELD in {MOST} of " in prove("--budget", f"{4 * MOST + 8}s")  # no more than the first portion
+    assert 4 * MOST + 8 < now[0] <= 4 * MOST + 8 + 5
+
+
+def test_what_a_run_took_is_said_and_on_what(plant: Path, prove: Prove) -> None:
+    assert "a run took " in prove("--fault", "forgets") and "a run took" not in prove("--fault", "forgets")
+    spent = Spent(courses_s=0.1, walks_s=0.3, forks_s=0.4, steps_s=1.2, plant_s=40.0, runs=4, joined=1)
+    assert spent.words == (
+        "a run took 500 ms of a processor: 300 ms to judge 10.0 s of the plant, 100 ms to fork, "
+        "100 ms for what runs share; 25% ended early, as without the fault"
+    )
 
 
 @pytest.mark.long

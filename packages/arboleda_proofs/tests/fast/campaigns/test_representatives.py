@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Hashable, Iterator
+from itertools import chain, repeat
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -12,13 +13,14 @@ from tests.lengths import length
 
 from arboleda.model.plant_model import PlantModel
 from arboleda_proofs.campaigns.proof import proof_campaign
-from arboleda_proofs.campaigns.proof.calm import Calm
+from arboleda_proofs.campaigns.proof.calm import Calm, calm_runs
 from arboleda_proofs.campaigns.proof.course import course_of
 from arboleda_proofs.campaigns.proof.forecast import Forecast
 from arboleda_proofs.campaigns.proof.forks import run_all
 from arboleda_proofs.campaigns.proof.outcome import Outcome
 from arboleda_proofs.campaigns.proof.proof import Proof
 from arboleda_proofs.campaigns.proof.representatives import FIRSTS, Representatives
+from arboleda_proofs.campaigns.proof.scenario import scenarios
 from arboleda_proofs.campaigns.proof.single_faults import single_faults
 from arboleda_proofs.simulator.faults import Fault
 from arboleda_proofs.simulator.faults.operators import NOWHERE
@@ -36,6 +38,12 @@ def stamp(cell):
     press = cell.device("press")
     rounds = [(press.press(), press.lift()) for _ in range(3)]
     return work(*(each for pair in rounds for each in pair))
+"""
+ONCE = """
+
+@recipe("lift", ends_with={"press.ram": "up"})
+def lift(cell):
+    return work(cell.device("press").lift())
 """
 CARELESS = ROUNDS.replace("press.lift())", "cell.fallback(press.lift(), cell.wait(1)))").replace("(3)", "(2)")
 DIFFER = 0.05  # of instants may end otherwise than those that stand for them
@@ -119,6 +127,22 @@ def test_one_fault_of_each_kind_at_each_kind_of_step_comes_first(plant: Path) ->
     assert len(firsts) < proof.total / 3
 
 
+def test_after_as_many_runs_as_pairs_of_a_step_and_a_kind_each_pair_was_met_once(plant: Path) -> None:
+    tried = representatives(plant, ROUNDS + ONCE)
+    calm = tuple(calm_runs(tried.model, scenarios(tried.model)))
+    proof = Proof(model=tried.model, calm=calm)
+    met = []
+    for each in proof.portions:
+        scenario, sights = calm[each.scenario].scenario, calm[each.scenario].sights
+        step = scenario.recipe, sights.step(proof.instant(each))
+        met += [(*step, fault.kind) for fault in proof.faults(each)]
+    pairs = set(met)
+    assert {each[0] for each in pairs} == {"stamp", "lift"}
+    assert len(met[: len(pairs)]) == len({*met[: len(pairs)]}) == len(pairs) < proof.total / 3
+    begun = [(each.scenario, proof.instant(each).at) for each in proof.portions[:8]]
+    assert len({*begun}) > 4  # so the first 64 runs are not all of one step
+
+
 def test_a_forecast_says_how_much_there_is_to_do_and_for_how_much_there_is_time(plant: Path) -> None:
     tried = representatives(plant, ROUNDS, *KINDS)
     proof = Proof(model=tried.model, calm=tried.calm, kinds=KINDS)
@@ -127,17 +151,19 @@ def test_a_forecast_says_how_much_there_is_to_do_and_for_how_much_there_is_time(
     assert " s on 2 cores; --budget is enough for about " in forecast.words
 
 
-def test_what_is_known_is_said_where_runs_without_faults_take_long(
+def test_the_first_line_is_the_same_however_many_tasks_run_before_the_second(
     plant: Path, prove: Prove, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     recipes = plant.parent / "small.py"
     recipes.write_text(GOOD + GOOD.partition("work\n")[2].replace("shine", "glow"))
-    seconds = iter(range(0, 10**9, 5))
-    clock = SimpleNamespace(monotonic=lambda: float(next(seconds)), process_time=lambda: 0.0)
+    seconds = chain([0.0, 1.0, 3.0], repeat(3.0))  # when it begins, and before the first two tasks
+    clock = SimpleNamespace(monotonic=lambda: next(seconds), process_time=lambda: 0.0)
+    whole = prove("--fault", "forgets").splitlines()[:2]
     monkeypatch.setattr(proof_campaign, "time", clock)
-    first, second = prove("--fault", "forgets").splitlines()[:2]
-    assert first == "0 tasks without faults so far"
-    assert second.startswith("2 recipes, classes of instants: about 8 runs, ")
+    cut = prove("--fault", "forgets", "--budget", "4s").splitlines()
+    assert whole[0] == cut[0] == "2 recipes, 2 tasks, 1 kind of fault; first each task without faults"
+    assert whole[1].startswith("2 recipes, classes of instants: about 8 runs, ")
+    assert any(each.startswith("half of --budget was over when 1 task had run") for each in cut)
 
 
 def test_the_answer_says_how_many_runs_stand_for_how_many(plant: Path, prove: Prove) -> None:

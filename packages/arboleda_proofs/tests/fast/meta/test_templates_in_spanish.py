@@ -38,6 +38,16 @@ def test_a_mishap_has_the_name_of_its_fault_in_both_languages() -> None:
             "NO SE CUMPLE: 2 incumplimientos y 1 tarea sin ningún fallo; 3 de 40 ejecuciones",
         ),
         (
+            "2 recipes, 1 task, 70 kinds of fault; first each task without faults",
+            "2 recetas, 1 tarea, 70 tipos de fallo; primero, cada tarea sin fallos",
+        ),
+        (
+            "a run took 55 ms of a processor: 38 ms to judge 12.0 s of the plant, 13 ms to fork, 4 ms for "
+            "what runs share; 14% ended early, as without the fault",
+            "una ejecución ocupó un procesador 55 ms: 38 ms para juzgar 12.0 s de la planta, 13 ms para "
+            "bifurcarse, 4 ms para lo que comparten; el 14% acabó antes, igual que sin el fallo",
+        ),
+        (
             "  the fault  ra_1: Cut its link (up, lost), for 3.000 s, then oven: It jams at 2.000 s",
             "  el fallo       ra_1: Cortar su enlace (up, lost), durante 3.000 s, después oven: Se atasca "
             "a los 2.000 s",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Hashable, Iterable, Iterator
+from collections.abc import Hashable, Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from arboleda.drivers import Command, Query, Value, VerbCommand
@@ -24,7 +24,6 @@ from .sights import Sights, Watch
 from .stage import ASKED_AT_S, Stage, entry_name
 
 FAR = 10**9  # commits: as many as no run has
-Tick = Callable[[], None]
 MOST_SCENARIOS = 64  # of one recipe, with all answers
 
 
@@ -109,10 +108,9 @@ class _Marks:
             self.questions[command.robot] = listed or self._numbers[command.robot, command.verb]
 
 
-def calm_run(model: PlantModel, scenario: Scenario, tick: Tick = lambda: None) -> Calm:
-    """Run a scenario where nothing goes wrong; `tick` is called now and then."""
+def calm_run(model: PlantModel, scenario: Scenario) -> Calm:
+    """Run a scenario where nothing goes wrong."""
     stage = Stage(model, scenario)
-    stage.on_its_way = tick
     marks, watch = _Marks(stage), Watch(stage)
     run = calm_play(stage)
     finding = next((f"{each.step}: {each.sentence}" for each in stage.watched.findings.found), "")
@@ -143,7 +141,7 @@ def calm_play(stage: Stage) -> Run:
     return stage.play(ASKED_AT_S, lambda: None, expected={}, commands=None, lasts_s=0.0)
 
 
-def calm_runs(model: PlantModel, scenarios: Iterable[Scenario], tick: Tick = lambda: None) -> Iterator[Calm]:
+def calm_runs(model: PlantModel, scenarios: Iterable[Scenario]) -> Iterator[Calm]:
     """The calm runs of scenarios, and of each answer in them after which something else is done.
 
     A part that a task lacks at a place of several cells, where another may put one, is brought first.
@@ -152,7 +150,7 @@ def calm_runs(model: PlantModel, scenarios: Iterable[Scenario], tick: Tick = lam
         known: set[Hashable] = set()
         waiting, tried = deque([first]), {first.answers}
         while waiting and len(known) < MOST_SCENARIOS:
-            calm = calm_run(model, waiting.popleft(), tick)
+            calm = calm_run(model, waiting.popleft())
             if calm.lacks is not None and _others_may_bring(model, calm.scenario, calm.lacks):
                 waiting.appendleft(calm.scenario.with_part(calm.lacks))
                 continue

@@ -41,7 +41,7 @@ def course_of(model: PlantModel, calm: Calm) -> Course:
     stage.on_its_way = look
     run = calm_play(stage)
     if run != calm.run:
-        raise ArboledaError(f"{calm.scenario.name} went otherwise as it was run again: {run.outcome}")
+        raise ArboledaError(f"{calm.scenario.name} went otherwise as it was run again: {run.outcome.words}")
     return Course(run=run, points=points)
 
 

@@ -14,9 +14,9 @@ from dataclasses import fields, is_dataclass
 from py_trees.behaviour import Behaviour
 
 from arboleda.engine import Act, Context, Leaf, Plant
+from arboleda.extension import Sentence
 from arboleda.model.orders import orders
 from arboleda.model.plant_model import Cell, PlantModel
-from arboleda.model.sentence import Sentence
 from arboleda.model.tree_nodes import nodes_of
 
 Names = Mapping[str, Hashable]  # what stands for a name in every cell that is equal

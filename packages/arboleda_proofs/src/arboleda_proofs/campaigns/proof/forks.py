@@ -22,6 +22,7 @@ from arboleda_proofs.simulator.judged_world import BrokenInvariant
 from .calm import Calm
 from .course import Course, rejoin
 from .outcome import Run
+from .spent import Spent
 from .stage import Stage
 
 Tick = Callable[[], None]
@@ -39,6 +40,7 @@ class Walk:
     def __init__(self, model: PlantModel, calm: Calm, course: Course | None = None) -> None:
         self._model, self._calm, self._course = model, calm, course
         self._at = self._took_s = 0.0
+        self._spent = Spent()
 
     @cached_property
     def _stage(self) -> Stage:
@@ -47,6 +49,11 @@ class Walk:
     def reaches(self, at: float) -> bool:
         """True if `at` s is still to come."""
         return at >= self._at
+
+    def spent(self) -> Spent:
+        """What it took since this was asked before."""
+        spent, self._spent = self._spent, Spent()
+        return spent
 
     def runs(self, groups: Sequence[Faults], tick: Tick, *, forks: bool | None = None) -> list[Run]:
         """A run for each group of faults, of which the first ones all begin at one instant, which is reached
@@ -59,7 +66,11 @@ class Walk:
             return self._anew(groups, tick)
         runs = []
         for faults in groups:
-            runs.append(_forked(partial(run_on, self._stage, self._calm, *faults)))
+            began = time.process_time()
+            run, steps_s, copies_s = _forked(partial(run_on, self._stage, self._calm, *faults))
+            forks_s = copies_s + time.process_time() - began
+            self._spent.count(run, faults[0].at, steps_s=steps_s, forks_s=forks_s)
+            runs.append(run)
             tick()
         return runs
 
@@ -69,12 +80,17 @@ class Walk:
             self._stage.go_to(at)
         except BrokenInvariant as broken:
             raise ArboledaError(f"the run without a fault ended before {at:g} s") from broken
-        self._at, self._took_s = at, self._took_s + time.process_time() - began
+        took_s = time.process_time() - began
+        self._at, self._took_s = at, self._took_s + took_s
+        self._spent.walks_s += took_s
 
     def _anew(self, groups: Sequence[Faults], tick: Tick) -> list[Run]:
         runs = []
         for faults in groups:
-            runs.append(run_one(self._model, self._calm, *faults, course=self._course))
+            began = time.process_time()
+            run = run_one(self._model, self._calm, *faults, course=self._course)
+            self._spent.count(run, faults[0].at, steps_s=time.process_time() - began)
+            runs.append(run)
             tick()
         return runs
 
@@ -116,8 +132,10 @@ def _stage(model: PlantModel, calm: Calm, course: Course | None) -> Stage:
     return stage
 
 
-def _forked(play: Callable[[], Run]) -> Run:
-    """The run that a fork of this process plays, which is awaited."""
+def _forked(play: Callable[[], Run]) -> tuple[Run, float, float]:
+    """The run that a fork of this process plays, which is awaited; and the seconds of a processor that the
+    fork took in its own code, and in the system's, which copies for it what it changes.
+    """
     read, write = os.pipe()
     child = os.fork()
     if not child:
@@ -131,9 +149,9 @@ def _forked(play: Callable[[], Run]) -> Run:
     os.close(write)
     with os.fdopen(read, "rb") as pipe:
         data = pipe.read()
-    os.waitpid(child, 0)
+    _, _, used = os.wait4(child, 0)
     if not data:
         raise ArboledaError("a run was killed; fewer --jobs need less memory")
     run: Any = pickle.loads(data)
     assert isinstance(run, Run)
-    return run
+    return run, used.ru_utime, used.ru_stime

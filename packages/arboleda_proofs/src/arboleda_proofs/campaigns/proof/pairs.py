@@ -87,8 +87,9 @@ class PairProof:
     def run(self, seed: int, *, tick: Tick | None = None) -> Proved:
         """Run all pairs of the portion of this number."""
         calm = self.proof.calm[self.row(seed)]
-        runs = Walk(self.proof.model, calm).runs(self.pairs(seed), tick or (lambda: None))
-        return proved_by(seed, runs)
+        walk = Walk(self.proof.model, calm)
+        runs = walk.runs(self.pairs(seed), tick or (lambda: None))
+        return proved_by(seed, runs, walk.spent())
 
     @cached_property
     def _singles(self) -> list[list[tuple[Instant, Fault]]]:

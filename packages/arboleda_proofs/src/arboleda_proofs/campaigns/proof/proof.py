@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
@@ -20,6 +21,7 @@ from .instants import Instant
 from .outcome import Outcome, Run
 from .representatives import Representatives
 from .scenario import Scenario
+from .spent import Spent
 
 T = TypeVar("T")
 Tick = Callable[[], None]
@@ -39,12 +41,16 @@ class Portion:
 
 @dataclass(frozen=True, kw_only=True)
 class Proved:
-    """Proved portion: its different outcomes, which of them each fault has, and all traces as one hash."""
+    """Proved portion: its different outcomes, which of them each fault has, and all traces as one hash.
+
+    `spent` is what it took; None where it was kept from before.
+    """
 
     number: int
     outcomes: tuple[Outcome, ...]
     rows: tuple[int, ...]
     digest: str
+    spent: Spent | None = field(default=None, compare=False)
 
     @property
     def broken(self) -> bool:
@@ -105,12 +111,19 @@ class Proof:
     def _course(self, row: int) -> Course:
         """The course of the calm run of this number."""
         if row not in self._courses:
+            began = time.process_time()
             self._courses[row] = course_of(self.model, self.calm[row])
+            self._unsaid.courses_s += time.process_time() - began
         return self._courses[row]
 
     @cached_property
     def _courses(self) -> dict[int, Course]:
         return {}
+
+    @cached_property
+    def _unsaid(self) -> Spent:
+        """What courses took that no portion has counted yet."""
+        return Spent()
 
     @cached_property
     def checked(self) -> dict[tuple[int, Fault], Sequence[Any]]:
@@ -185,7 +198,10 @@ class Proof:
         """Run all faults of the portion of this number."""
         portion = self.portions[seed]
         walk = self._walk(portion.scenario, self.instant(portion).at)
-        return proved_by(seed, walk.runs([(each,) for each in self.faults(portion)], tick or (lambda: None)))
+        runs = walk.runs([(each,) for each in self.faults(portion)], tick or (lambda: None))
+        spent = walk.spent()
+        spent.courses_s, self._unsaid.courses_s = self._unsaid.courses_s, 0.0
+        return proved_by(seed, runs, spent)
 
     def _walk(self, row: int, at: float) -> Walk:
         """The walk along the calm run of this number that still comes to `at` s; there is one at a time."""
@@ -208,8 +224,8 @@ def spread(items: Sequence[T]) -> list[T]:
     return [items[turn] for turn in turns]
 
 
-def proved_by(number: int, runs: Sequence[Run]) -> Proved:
-    """The portion of this number, with these runs."""
+def proved_by(number: int, runs: Sequence[Run], spent: Spent) -> Proved:
+    """The portion of this number, with these runs, which took so much."""
     outcomes = {run.outcome: None for run in runs}
     numbers = {outcome: index for index, outcome in enumerate(outcomes)}
     digest = blake2b("".join(run.digest for run in runs).encode(), digest_size=16).hexdigest()
@@ -218,4 +234,5 @@ def proved_by(number: int, runs: Sequence[Run]) -> Proved:
         outcomes=tuple(outcomes),
         rows=tuple(numbers[run.outcome] for run in runs),
         digest=digest,
+        spent=spent,
     )

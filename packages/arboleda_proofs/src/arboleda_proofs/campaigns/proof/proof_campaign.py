@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from typing import TypeVar
 
 from rich.console import Console
@@ -37,14 +38,20 @@ from .proof_request import ProofRequest
 from .proof_tally import ProofTally
 from .pytest_file import Breach, as_tests
 from .recipe_digest import recipe_digests
-from .scenario import scenarios
+from .scenario import Scenario, scenarios
+from .single_faults import possible_kinds
+from .spent import Spent
 
 MEND_S = 120.0  # a mend is looked for so long
 CALM_SHARE = 0.5  # of the budget, in which runs without faults begin
-CHECKS_SHARE = 1.1  # of the budget, in which the last checks are tried of what nobody notices
-SAID_BY_S = 6.0  # when it is said what is known so far, if that is not all by then
+RUNS_SHARE = 0.95  # of the budget, in which runs begin; the rest is for checks of what nobody notices
+LATE_S = 1.0  # after the budget, when runs that have begun are given up
 Work = TypeVar("Work")
 NOTHING_RUN = 2  # exit status: of nothing it cannot be said that it held
+
+
+class _BudgetOver(Exception):
+    """Raised where runs that have begun would go on for long after the budget."""
 
 
 class ProofCampaign:
@@ -64,13 +71,13 @@ class ProofCampaign:
         self._total = 0
         self._jobs = 1
         self._simulated_s = 0.0  # without faults
-        self._is_said = False  # how much there is to do, as far as it was known
+        self._spent = Spent()  # by runs with faults, but for those that were kept
         self._began, self._began_work = time.monotonic(), time.process_time()
 
     def run(self, jobs: int) -> int:
         """Prove, and return the exit status. Ctrl-C ends it with what was done so far."""
         self._jobs = jobs
-        for note in (*notes([self._plant]), *equal_cells.notes(self._plant.model)):
+        for note in notes([self._plant]):
             self._say(note, "dim")
         status = INTERRUPTED
         try:
@@ -98,22 +105,20 @@ class ProofCampaign:
     def _run_calmly(self) -> None:
         found = [*scenarios(self._plant.model, self._request.recipes)]
         self._tasks = len(found)
+        self._say(self._outset(found))
         doing, self._began_work = "running without faults", time.process_time()
         with progress(self._console, doing, None) as show, self._lines.progress(doing) as tell:
-            runs = calm_runs(self._plant.model, found, self._say_in_time)
-            for calm in self._within(CALM_SHARE, runs):
+            for calm in self._within(CALM_SHARE, calm_runs(self._plant.model, found)):
                 self._calm.append(calm)
                 self._simulated_s += calm.run.seconds + calm.lasts_s
                 show(counted(len(self._calm), "task"), len(self._calm))
                 tell(len(self._calm), None)
 
-    def _say_in_time(self) -> None:
-        """Say how much there is to do in the recipes that have run so far, where the others take long."""
-        if self._is_said or time.monotonic() - self._began < SAID_BY_S:
-            return
-        self._is_said = True
-        tasks = f"{counted(len(self._calm), 'task')} without faults so far"
-        self._say(f"{tasks}: {self._forecast(self._proof()).words}" if self._calm else tasks)
+    def _outset(self, found: Sequence[Scenario]) -> str:
+        """Words for what is known of the work before anything has run, so the same each time."""
+        recipes = counted(len({(each.cell, each.recipe) for each in found}), "recipe")
+        kinds = counted(len(self._request.kinds or possible_kinds()), "kind")
+        return f"{recipes}, {counted(len(found), 'task')}, {kinds} of fault; first each task without faults"
 
     def _proof(self) -> Proof:
         sound = tuple(each for each in self._calm if each.is_sound)
@@ -177,11 +182,13 @@ class ProofCampaign:
         with (
             progress(self._console, name, total) as show,
             self._lines.progress(name) as tell,
-            self._campaign(proof, self._within(1.0, waiting), (known, total), show) as campaign,
+            suppress(_BudgetOver),
+            self._campaign(proof, self._within(RUNS_SHARE, waiting), (known, total), show) as campaign,
         ):
             tell(known, total)
             for proved in campaign.results():
                 tally.proved[proved.number] = proved
+                self._spent.add(proved.spent or Spent())
                 kept.keep(proved)
                 tell(tally.runs, total)
                 if isinstance(proof, Proof):
@@ -197,6 +204,8 @@ class ProofCampaign:
         def tick() -> None:
             seconds = max(time.monotonic() - began, 1e-3)
             show(_progress(known, campaign.minutes, total, seconds), known + campaign.minutes)
+            if time.monotonic() - self._began > self._request.budget_s + LATE_S:
+                raise _BudgetOver
 
         campaign: Campaign[Proved]
         if self._jobs == 1:
@@ -218,7 +227,7 @@ class ProofCampaign:
             except StopIteration:
                 return
             is_first = False
-        self._is_cut |= share < 1.0
+        self._is_cut |= share == CALM_SHARE
 
     def _report(self, *, complete: bool) -> None:
         tally, breaches = self._tally, breaches_of(self._tally, self._pairs)
@@ -233,7 +242,11 @@ class ProofCampaign:
             print_whole(self._console, table)
         for breach in breaches:
             proof_report.story(self._console, breach)
+        for note in equal_cells.notes(self._plant.model):
+            self._say(note)
         self._say(self._amount())
+        if self._spent.runs:
+            self._say(self._spent.words, "dim")
         if self._pairs is not None:
             line = proof_report.pairs_line(self._pairs, sum(each.then is not None for each in breaches))
             self._console.print(line, soft_wrap=True)
@@ -262,7 +275,7 @@ class ProofCampaign:
         is_whole = self._request.html or self._request.json or self._console.quiet
         found = self._tally.unnoticed()[: None if is_whole else proof_report.MOST_UNNOTICED]
         with progress(self._console, "trying checks", len(found)) as show:
-            for number, (case, _) in enumerate(self._within(CHECKS_SHARE, found), start=1):
+            for number, (case, _) in enumerate(self._within(1.0, found), start=1):
                 checks(self._tally.proof, case)
                 show(f"{number:,} of {len(found):,}", number)
 
