@@ -10,15 +10,18 @@ from typing import Any
 
 import pytest
 
+from arboleda.adapters.broker_login import address
 from arboleda.drivers import Clock, Command, Hear, NotSent, Stop, StopMode
 from arboleda.model.messages import Heartbeat, MotionState, Report, Undelivered
 from arboleda.model.plant_model import DriverUse, Link, PlantModel, Robot, Timing
+from arboleda.runtime.parts.broker import OtherBroker
 from arboleda.runtime.parts.drivers import DriversPart
 
 from ..patience import PATIENCE_S
 from ..unit.kinds.station import STATION, plant
 
 EPOCH = 9
+BROKER = OtherBroker(address("10.0.0.5:1883"), None)
 GO = STATION.command(id="9-1", robot="station", verb="go", values={})
 LIGHT = STATION.command(id="9-2", robot="station", verb="light", values={"on": True})
 HALT = Stop(id="9-3", robot="station", mode=StopMode.HALT)
@@ -66,7 +69,7 @@ class Plant:
         timing = Timing(stale_after_s=stale_after_s)
         self.crashes: list[BaseException] = []
         model = PlantModel(name="lab", cells=cells, timing=timing)
-        self.part = DriversPart(model, EPOCH, lambda name, error: self.crashes.append(error))
+        self.part = DriversPart(model, EPOCH, lambda name, error: self.crashes.append(error), BROKER)
         self.heard: queue.Queue[Report | Undelivered] = queue.Queue()
         self.part.connect(self.heard.put)
 
@@ -106,6 +109,24 @@ def running() -> Iterator[Callable[..., Plant]]:
     for each in made:
         each.part.stop()
         assert each.crashes == []
+
+
+class Talker(Tame):
+    """A driver that speaks MQTT."""
+
+    broker: Any = None
+
+    def use_broker(self, broker: Any) -> None:
+        self.broker = broker
+
+
+def test_a_driver_that_speaks_mqtt_has_the_broker_of_the_plant_before_it_starts(
+    running: Callable[..., Plant],
+) -> None:
+    driver = Talker()
+    there = running(driver)
+    there.is_up()
+    assert driver.broker is BROKER
 
 
 def test_a_command_is_sent_by_the_driver_and_it_is_stopped_at_the_end(running: Callable[..., Plant]) -> None:
@@ -288,7 +309,7 @@ def test_devices_with_the_same_driver_and_equal_settings_share_one() -> None:
     members = tuple((name, driven(name, settings)) for name, settings in names.items())
     (cell,) = plant().cells
     model = PlantModel(name="lab", cells=(replace(cell, members=members),))
-    part = DriversPart(model, EPOCH, lambda name, error: None)
+    part = DriversPart(model, EPOCH, lambda name, error: None, BROKER)
     part.start()
     try:
         assert {starts.get(timeout=PATIENCE_S), starts.get(timeout=PATIENCE_S)} == {("a", "c"), ("b",)}

@@ -74,6 +74,14 @@ class Listens(Protocol):
 
 
 @runtime_checkable
+class UsesBroker(Protocol):
+    """Driver over MQTT, at the plant's own broker where its settings name no other."""
+
+    def use_broker(self, broker: Any) -> None:
+        """Take the plant's broker: its `address`, and its `credentials` or None; called before `start`."""
+
+
+@runtime_checkable
 class Interruptible(Protocol):
     """Driver whose `send` waits for the device, as where an order is several telegrams."""
 

@@ -7,6 +7,7 @@ import secrets
 import threading
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from typing import Any
 
 from arboleda.adapters.broker_login import address, login
 from arboleda.adapters.mqtt import MqttClient, NotConnected
@@ -17,13 +18,16 @@ from arboleda.wire.transport import Connection, Delivery, Publication
 LOG = logging.getLogger("arboleda.drivers.mqtt")
 LONGEST_TOPIC = 300
 LEAST_WAIT_S = 0.01
+HERE = "127.0.0.1"  # the broker where no plant has one
 
 
 class MqttDriver(ABC):
-    """Driver over MQTT. Each method of a subclass is called while `lock` is held."""
+    """Driver over MQTT, at the plant's broker without a `broker`. Each method of a subclass is called while
+    `lock` is held."""
 
     def __init__(self, broker: str, version: str = "3.1.1") -> None:
         self._broker, self._version = broker, version
+        self._plant: Any = None  # the plant's broker
         self.lock = threading.Lock()  # guards the machines, and the order of their messages
         self._ending = threading.Event()
         self._seldom = RateLimit()
@@ -31,10 +35,10 @@ class MqttDriver(ABC):
         self._ticking: threading.Thread | None = None
 
     @abstractmethod
-    def begin(self, devices: Sequence[Robot], mark: str) -> Sequence[str]:
+    def begin(self, devices: Sequence[Robot], mark: str, broker: str) -> Sequence[str]:
         """Make the machines of the devices; returns the topics to subscribe to.
 
-        `mark` sets this start apart from any other.
+        `mark` sets this start apart from any other; `broker` is the address for sentences.
         """
 
     @abstractmethod
@@ -53,17 +57,21 @@ class MqttDriver(ABC):
     def give(self, command: Command) -> None:
         """Give a command; raises NotSent."""
 
+    def use_broker(self, broker: Any) -> None:
+        self._plant = None if self._broker else broker
+
     def start(self, devices: Sequence[Robot], hear: Hear, clock: Clock) -> None:
         self.hear, self.clock = hear, clock
-        mark = secrets.token_hex(4)
-        topics = self.begin(devices, mark)
+        mark, plant = secrets.token_hex(4), self._plant
+        at = address(self._broker or HERE) if plant is None else plant.address
+        topics = self.begin(devices, mark, str(at))
         self._client = MqttClient(
             f"arboleda-{mark}",
-            address(self._broker),
+            at,
             on_event=self._handle,
             subscriptions=topics,
             clock=clock,
-            credentials=login(),
+            credentials=login() if plant is None else plant.credentials,
             version=self._version,
         )
         self._client.start()

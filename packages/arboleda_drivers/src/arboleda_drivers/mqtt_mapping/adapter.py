@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 from arboleda.drivers import Command, NotSent, Report, Robot, Stop, driver
 from arboleda.wire.transport import Delivery, Publication
@@ -26,7 +27,8 @@ class Mqtt(MqttDriver):
         self._devices: dict[str, MappedDevice] = {}
         self._filters: dict[str, list[str]] = {}  # of each device
 
-    def begin(self, devices: Sequence[Robot], mark: str) -> Sequence[str]:
+    def begin(self, devices: Sequence[Robot], mark: str, broker: str) -> Sequence[str]:
+        self._settings = replace(self._settings, broker=broker)
         first = 1 + int(mark, 16) % NUMBERS * NUMBERS
         for device in devices:
             self._devices[device.name] = device_of(device, self._settings, first=first)

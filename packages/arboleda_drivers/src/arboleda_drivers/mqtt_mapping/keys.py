@@ -11,7 +11,7 @@ from arboleda.drivers import DriverError
 from .heard import Heard, Says, Source
 from .sent import Sent
 
-BROKER = "127.0.0.1:1883"  # of the plant itself
+BROKER = "127.0.0.1:1883"  # of a plant that has found its port free
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,13 +54,13 @@ class Still:
 class Keys:
     """Keys of the driver `mqtt`: what a device hears and says at its topics.
 
-    `accepted`, `done` and `failed` are for all verbs. It is there while `online` is said last, and nothing
-    for `silent_after_s` is silence; at least one of them is needed. `ask` has it tell its facts and its state
-    where some are not known; it never tells those that are `unheard`. `names` are names of devices in their
-    topics, where these differ from the plant's.
+    Without `broker` it is at the plant's. `accepted`, `done` and `failed` are for all verbs. It is there while
+    `online` is said last, and nothing for `silent_after_s` is silence; at least one of them is needed. `ask`
+    has it tell its facts and its state where some are not known; it never tells those that are `unheard`.
+    `names` are names of devices in their topics, where these differ from the plant's.
     """
 
-    broker: str = BROKER
+    broker: str = ""
     version: Literal["3.1.1", "5"] = "3.1.1"
     names: dict[str, str] = field(default_factory=dict)
     online: Says | None = None
@@ -87,6 +87,11 @@ class Keys:
             raise DriverError(f"silent_after_s is {self.silent_after_s:g}; allowed: 0.5 to 86400")
         if self.state is not None and self.still is not None:
             raise DriverError("has state and still; keep one of them")
+
+    @property
+    def address(self) -> str:
+        """The address of its broker, for who is no plant."""
+        return self.broker or BROKER
 
     def name_of(self, device: str) -> str:
         """The name of a device in its topics."""

@@ -39,7 +39,7 @@ class Link:
         """The reason why there is no link, in a sentence; None if there is one."""
         online, silent_s = self._settings.online, self._settings.silent_after_s
         if not self.broker:
-            return f"the MQTT broker at {self._settings.broker} is not there"
+            return f"the MQTT broker at {self._settings.address} is not there"
         if online is not None and not self._is_there:
             where, meant = online.named(self._name), " or ".join(map(as_text, online.values))
             if self._said is None or not meant:

@@ -178,7 +178,7 @@ class MappedDevice:
     def command(self, now: float, command: Command) -> list[Message]:
         """The messages that carry out a command; raises NotSent if that is impossible."""
         if not self._link.broker:
-            raise NotSent(f"the MQTT broker at {self._settings.broker} is not there")
+            raise NotSent(f"the MQTT broker at {self._settings.address} is not there")
         if isinstance(command, Stop):
             return [*self._filled(self._stopped(command), {}), *self._told(now)]
         if (why := self._hindrance(now)) is not None:

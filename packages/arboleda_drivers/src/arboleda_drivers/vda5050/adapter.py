@@ -24,7 +24,7 @@ class Vda5050(MqttDriver):
         super().__init__(settings.broker)
         self._settings = settings
 
-    def begin(self, devices: Sequence[Robot], mark: str) -> Sequence[str]:
+    def begin(self, devices: Sequence[Robot], mark: str, broker: str) -> Sequence[str]:
         settings = self._settings
         for problem in [sentence for device in devices for _, sentence in settings.problems(device)]:
             raise ValueError(problem)

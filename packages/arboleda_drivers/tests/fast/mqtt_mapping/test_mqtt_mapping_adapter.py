@@ -35,7 +35,7 @@ class Flaky(Mqtt):
         self._lost, self._count = lost, 0
         self.hear = lambda report: None
         self.clock = lambda: 1.0
-        self.begin([device], "0")
+        self.begin([device], "0", "127.0.0.1:1883")
         self.connected(up=True)
         self.take(Delivery(1.0, "arm/mode", b"idle"))
 

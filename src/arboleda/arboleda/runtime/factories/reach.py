@@ -105,7 +105,7 @@ def boards(assembly: Assembly) -> Iterator[Part]:
 def drivers(assembly: Assembly) -> Iterator[Part]:
     """The drivers of robots that no board speaks for."""
     if "orchestrator" in assembly.parts and assembly.model.driven:
-        part = DriversPart(assembly.model, assembly.epoch, assembly.crash)
+        part = DriversPart(assembly.model, assembly.epoch, assembly.crash, assembly.need(Broker))
         assembly.offer(DriversPart, part)
         yield part
 

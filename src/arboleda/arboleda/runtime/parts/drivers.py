@@ -14,7 +14,7 @@ from typing import Any, TypeGuard
 from arboleda.adapters import clock
 from arboleda.adapters.rate_limit import RateLimit
 from arboleda.drivers import supervisor
-from arboleda.drivers.port import Driver, Interruptible, NotSent
+from arboleda.drivers.port import Driver, Interruptible, NotSent, UsesBroker
 from arboleda.drivers.supervisor import (
     Begin,
     DeviceHalt,
@@ -35,7 +35,7 @@ from arboleda.model.plant_model import DriverUse, PlantModel, Robot
 from arboleda.model.sentence import OWN
 
 from ..loop import Loop
-from .part import Crash
+from .part import BrokerAddress, Crash
 
 LOG = logging.getLogger("arboleda.drivers")
 PATIENCE_S = 3.0  # for drivers to end
@@ -44,9 +44,9 @@ PATIENCE_S = 3.0  # for drivers to end
 class DriversPart:
     """The drivers of a plant; `connect` the plant before `start`. It is the plant's port to their devices."""
 
-    def __init__(self, model: PlantModel, epoch: int, crash: Crash) -> None:
+    def __init__(self, model: PlantModel, epoch: int, crash: Crash, broker: BrokerAddress) -> None:
         groups = list(_groups(model))
-        self._workers = [Worker(use, robots, self._post) for use, robots in groups]
+        self._workers = [Worker(use, robots, self._post, broker) for use, robots in groups]
         self._hear: Callable[[Report | Undelivered], None] = lambda event: None
         self._seldom = RateLimit()
         named = [(use.name, robots) for use, robots in groups]
@@ -115,11 +115,14 @@ class Worker:
     """
 
     def __init__(
-        self, use: DriverUse, robots: tuple[Robot, ...], post: Callable[[supervisor.Event], None]
+        self,
+        use: DriverUse,
+        robots: tuple[Robot, ...],
+        post: Callable[[supervisor.Event], None],
+        broker: BrokerAddress,
     ) -> None:
-        self._use = use
-        self._robots = robots
-        self._post = post
+        self._use, self._robots = use, robots
+        self._post, self._broker = post, broker
         self._jobs: deque[Job] = deque()
         self._come = threading.Condition()  # around the jobs
         self._driver: Driver | None = None
@@ -209,6 +212,8 @@ class Worker:
         self._life = life
         try:
             self._driver = self._use.make()
+            if isinstance(self._driver, UsesBroker):
+                self._driver.use_broker(self._broker)
             self._driver.start(self._robots, partial(self._hear, life), clock.seconds)
         except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
             self._broke(life, in_words(error), error, started=False)

@@ -83,7 +83,7 @@ class Server:
     def __init__(self, devices: Sequence[Robot], faults: Collection[str], *, is_there: bool = False) -> None:
         """Raises DriverError where none is mapped, or they are at several brokers."""
         found = [(device, settings) for device, settings in _mapped(devices)]
-        brokers = {settings.broker for _, settings in found}
+        brokers = {settings.address for _, settings in found}
         if len(brokers) != 1:
             names = ", ".join(sorted(brokers)) or "none"
             raise DriverError(f"the devices with driver: {{mqtt: ...}} need one broker; there are {names}")
