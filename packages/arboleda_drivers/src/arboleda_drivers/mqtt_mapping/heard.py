@@ -11,13 +11,11 @@ from typing import Any
 
 from arboleda.drivers import DriverError, FactType, Value, plain
 from arboleda_drivers.meaning import SCALARS, Meaning, UnreadableValue, is_meant, is_range
+from arboleda_drivers.paths import NOTHING, json_at, steps
 
 LONGEST_SHOWN = 80  # characters of a message in a sentence
 LONGEST = 65536  # bytes of a message that is read
-PLACE = re.compile(r"\.?([^.\[\]]+)|\[(\d+)\]")
 NAME = re.compile(r"\{(\w+)\}")
-NOTHING = object()
-"""In place of a value that a message does not have."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,12 +36,13 @@ class Source:
             raise DriverError("has a path and a pattern; keep one of them")
         if self.pattern and _groups(self.pattern) != 1:
             raise DriverError(f"pattern {self.pattern} needs one group in parentheses, which is the value")
-        places(self.path)
+        if self.path:
+            steps(self.path)
 
     def raw(self, payload: bytes) -> object:
         """The value in a message; NOTHING where it has none."""
         if self.path:
-            return at(self.path, parsed(payload))
+            return json_at(self.path, parsed(payload))
         text = decoded(payload)
         if not self.pattern:
             return text.strip()
@@ -94,7 +93,8 @@ class Says(Source):
         for each in self.values:
             if not isinstance(each, SCALARS):
                 raise DriverError("equals needs a value, or a list of values")
-        places(self.id), places(self.why)
+        for path in filter(None, (self.id, self.why)):
+            steps(path)
 
     @property
     def values(self) -> Sequence[Any]:
@@ -108,11 +108,11 @@ class Says(Source):
         raw = self.raw(payload) if self.path or self.pattern or self.values else ""
         if raw is NOTHING or (self.values and not any(is_meant(raw, each) for each in self.values)):
             return False
-        return not self.id or any(is_meant(at(self.id, parsed(payload)), id) for id in ids)
+        return not self.id or any(is_meant(json_at(self.id, parsed(payload)), id) for id in ids)
 
     def reason(self, payload: bytes) -> str:
         """The reason that a message tells; "" for none."""
-        found = at(self.why, parsed(payload)) if self.why else NOTHING
+        found = json_at(self.why, parsed(payload)) if self.why else NOTHING
         return "" if found is NOTHING or found is None else str(found)
 
 
@@ -133,33 +133,6 @@ def parsed(payload: bytes) -> object:
         return json.loads(decoded(payload), parse_constant=_refused)
     except (ValueError, RecursionError) as error:
         raise UnreadableValue("it is no JSON") from error
-
-
-def at(path: str, value: object) -> object:
-    """The value at a path; NOTHING where there is none."""
-    for place in places(path):
-        is_there = place in value if isinstance(value, Mapping) else _has(value, place)
-        if not is_there:
-            return NOTHING
-        value = value[place]  # type: ignore[index]
-    return value
-
-
-def _has(value: object, place: str | int) -> bool:
-    return isinstance(value, list) and isinstance(place, int) and place < len(value)
-
-
-@lru_cache(maxsize=1024)
-def places(path: str) -> tuple[str | int, ...]:
-    """The steps of a path, as motor.angle or axes[0].mm; raises DriverError for a text that is none."""
-    found, end = [], 0
-    while end < len(path):
-        match = PLACE.match(path, end)
-        if match is None:
-            raise DriverError(f"{path} is no path; write it as motor.angle or axes[0].mm")
-        found.append(int(match[2]) if match[2] is not None else match[1])
-        end = match.end()
-    return tuple(found)
 
 
 def lack(source: Source, payload: bytes) -> str:

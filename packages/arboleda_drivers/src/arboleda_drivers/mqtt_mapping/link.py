@@ -8,8 +8,9 @@ import zlib
 from arboleda.drivers import plain
 from arboleda.wire.transport import Delivery
 from arboleda_drivers.meaning import as_text
+from arboleda_drivers.paths import NOTHING
 
-from .heard import NOTHING, Source, matches
+from .heard import Source, matches
 from .keys import Boot, Keys
 
 TWINS_S = 10.0  # that two devices of one name are said after their boots have alternated

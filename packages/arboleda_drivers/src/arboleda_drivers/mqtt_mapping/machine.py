@@ -31,9 +31,10 @@ from arboleda.drivers import (
 from arboleda.wire.transport import Delivery, Publication
 from arboleda_drivers.connections.link import LogLine
 from arboleda_drivers.meaning import UnreadableValue
+from arboleda_drivers.paths import NOTHING
 from arboleda_drivers.plc.checks import answers
 
-from .heard import NOTHING, Says
+from .heard import Says
 from .keys import Keys
 from .link import Link
 from .sent import DEVICE, ID, MOST, NUMBER, Sent

@@ -7,9 +7,10 @@ import math
 from arboleda.drivers import DeviceKind, Facts, MotionState, Value
 from arboleda.wire.transport import Delivery
 from arboleda_drivers.meaning import UnreadableValue, as_text
+from arboleda_drivers.paths import NOTHING
 from arboleda_drivers.plc.plc_snapshot import STATES
 
-from .heard import NOTHING, Heard, lack
+from .heard import Heard, lack
 from .keys import Keys
 from .link import Link
 

@@ -7,10 +7,10 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from arboleda.drivers import Device, DriverError, Facts, FactType, Value
+from arboleda_drivers.paths import field_at
 from arboleda_drivers.plc.plc_snapshot import STATES
 
 from .keys import End, Keys, Source
-from .paths import value_at
 
 Told = End | tuple[str, str]
 """Where something is told: a topic, or ("feedback", verb) or ("result", verb)."""
@@ -80,7 +80,7 @@ class ToldFacts:
         self._bad.pop(told, None)
         for name, source, of in self._from.get(told, []):
             try:
-                raw, where = value_at(message, source.path), f"{_name(told)} {source.path}"
+                raw, where = field_at(source.path, message), f"{_name(told)} {source.path}"
                 value = self._read(name, source, of, raw, where)
                 if name in self._values and self._values[name] != value:
                     self._changed_at[name] = now

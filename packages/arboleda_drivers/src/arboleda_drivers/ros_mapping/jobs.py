@@ -7,13 +7,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from arboleda.drivers import DriverError, OnStop, VerbCommand, Work, plain
+from arboleda_drivers.paths import field_at
 from arboleda_drivers.ros_action.events import Status
 from arboleda_drivers.ros_action.goal import Goal
 from arboleda_drivers.ros_action.homing import LONGEST_WORD
 
 from .heard_facts import TEXT
 from .keys import Call, Field, Verb
-from .paths import value_at
 
 SPARE_S = 0.5  # the plant's own deadline comes first
 
@@ -61,7 +61,7 @@ def failure(call: Call, status: Status, message: object) -> str:
 
 def word(field: Field, message: object) -> str:
     """The word for a field: that of the mapping, else its value."""
-    raw = value_at(message, field.field)
+    raw = field_at(field.field, message)
     try:
         return str(field.value(raw, TEXT, field.field))
     except DriverError:
@@ -71,5 +71,5 @@ def word(field: Field, message: object) -> str:
 def _unlike(done: Mapping[str, object], message: object) -> list[tuple[str, object]]:
     if message is None:
         return []
-    told = ((path, value, value_at(message, path)) for path, value in done.items())
+    told = ((path, value, field_at(path, message)) for path, value in done.items())
     return [(path, found) for path, value, found in told if found != value]

@@ -8,8 +8,8 @@ from typing import Any, Literal, NamedTuple
 
 from arboleda.drivers import DriverError, Value, among
 from arboleda_drivers.meaning import Meaning, as_text
+from arboleda_drivers.paths import FIELD, steps
 
-from .paths import steps
 
 TYPES = {"action": "action", "service": "srv", "publish": "msg", "topic": "msg"}
 FORMS = {
@@ -76,7 +76,7 @@ class Field(Meaning):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        steps(self.field)
+        steps(self.field, FIELD)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,7 +101,7 @@ class Call:
             raise DriverError("give one of action, service and publish, with its name")
         check_type(self.type, TYPES[self.kind])
         for path in (*self.fields, *self.done):
-            steps(path)
+            steps(path, FIELD)
 
     @property
     def kind(self) -> str:
@@ -159,7 +159,7 @@ class Source(Meaning):
         if self.topic:
             check_type(self.type, "msg")
         if self.path:
-            steps(self.path)
+            steps(self.path, FIELD)
 
     @property
     def path(self) -> str:

@@ -26,6 +26,7 @@ from arboleda.drivers import (
 )
 from arboleda_drivers.connections.link import CommandNotSent
 from arboleda_drivers.connections.receipts import Receipts
+from arboleda_drivers.paths import field_at
 from arboleda_drivers.plc.plc_snapshot import STATES
 from arboleda_drivers.ros_action.events import CancelAnswer, GoalAnswer, GoalList, GoalResult, Said, Status
 from arboleda_drivers.ros_action.goal import SETTLE_S
@@ -37,7 +38,6 @@ from .events import ActionSaid, EndsFound, Event, GoalRequest, Message, MessageH
 from .heard_facts import ToldFacts
 from .jobs import Job, failure, job
 from .keys import End, Keys
-from .paths import value_at
 from .presence import GONE_S, Presence
 
 SHOWN_S = 1.0  # within it a topic shows what a result has said
@@ -295,7 +295,7 @@ class Machine:
             each.succeeded_at = now
         else:
             self._jobs.pop(end)
-            raw, of = value_at(message, answer.field), each.command.definition.answer_type
+            raw, of = field_at(answer.field, message), each.command.definition.answer_type
             try:
                 self._receipts.answer(each.id, answer.value(raw, of, answer.field))
             except DriverError as error:

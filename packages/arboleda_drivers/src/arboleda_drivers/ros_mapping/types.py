@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any
 
 from arboleda.drivers import DriverError, among, quoted
+from arboleda_drivers.paths import FIELD, steps
 from arboleda_drivers.ros_action.interfaces import interface
 
 from .keys import NOW, Call, Fields
-from .paths import steps
 
 SENT = {"action": "Goal", "service": "Request"}
 HEARD = {"action": "Result", "service": "Response"}
@@ -50,11 +50,11 @@ def message_of(call: Call, fields: Fields, now: object = None) -> Any:
 def heard_in(name: str, part: str, path: str) -> None:
     """Raises DriverError unless a path leads to a value in that part of a type, "" for the type itself."""
     type = interface(name)
-    _refuse_whole(_slot_at(getattr(type, part) if part else type, steps(path), path), path)
+    _refuse_whole(_slot_at(getattr(type, part) if part else type, steps(path, FIELD), path), path)
 
 
 def _set(message: Any, path: str, value: Any, now: object) -> None:
-    *way, last = steps(path)
+    *way, last = steps(path, FIELD)
     slot = _slot_at(type(message), (*way, last), path)
     if isinstance(last, int):
         raise DriverError(f"{path} is one item of a list of values; give the list as a whole, [1, 2]")

@@ -13,8 +13,8 @@ from arboleda.drivers import DriverError, Evidence, OnStop
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file import drivers
 from arboleda.plant_file.loader import load
+from arboleda_drivers.paths import FIELD, field_at, steps
 from arboleda_drivers.ros_mapping.keys import Call, Qos, Verb
-from arboleda_drivers.ros_mapping.paths import steps, value_at
 from arboleda_drivers.ros_mapping.settings import Settings
 from arboleda_drivers.ros_mapping.types import message_of
 
@@ -145,11 +145,11 @@ def test_lists_have_their_length_and_whole_numbers_their_limits() -> None:
 
 def test_a_path_leads_into_lists_and_ends_where_they_do() -> None:
     message = SimpleNamespace(rows=[SimpleNamespace(x=1.5)])
-    assert value_at(message, "rows[0].x") == 1.5
-    assert value_at(message, "rows[1].x") is None
+    assert field_at("rows[0].x", message) == 1.5
+    assert field_at("rows[1].x", message) is None
     for wrong in ("a b", ".a", "[0]", "a.", ""):
         with pytest.raises(DriverError):
-            steps(wrong)
+            steps(wrong, FIELD)
 
 
 def test_the_example_is_good() -> None:

@@ -8,8 +8,8 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 
 from arboleda_drivers.meaning import as_text, is_number
-from arboleda_drivers.mqtt_mapping.heard import places
 from arboleda_drivers.mqtt_mapping.virtual.saying import put
+from arboleda_drivers.paths import steps
 
 from .guess import MOST_WORDS, Guess, Heard
 from .hearing import Listening, Place, Seen
@@ -148,7 +148,7 @@ def _sent(each: Heard, guess: Guess) -> str:
         body[id] = "{number}" if all(map(is_number, each.values(id))) else "{id}"
     payload: object = "" if [*body] == [""] else {}
     for path, value in body.items():
-        payload = put(payload, places(path), value)
+        payload = put(payload, steps(path) if path else (), value)
     parts = [f"topic: {_quoted(each.topic)}"]
     parts += [f"payload: {json.dumps(payload, ensure_ascii=False)}"] if payload != "" else []
     parts += (

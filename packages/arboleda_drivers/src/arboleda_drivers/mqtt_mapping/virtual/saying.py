@@ -8,7 +8,8 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from arboleda_drivers.meaning import SCALARS, as_text
-from arboleda_drivers.mqtt_mapping.heard import Says, Source, places
+from arboleda_drivers.mqtt_mapping.heard import Says, Source
+from arboleda_drivers.paths import steps
 
 GROUP = re.compile(r"\((?!\?)[^()]*\)")
 Said = tuple[Source, str, object]
@@ -21,7 +22,7 @@ def messages(said: Iterable[Said], device: str) -> Iterator[tuple[str, bytes]]:
     for source, path, value in said:
         topic = source.named(device).replace("+", device).replace("#", device)
         if path:
-            whole[topic] = put(whole.get(topic), places(path), value)
+            whole[topic] = put(whole.get(topic), steps(path), value)
         else:
             yield topic, _text(source, value).encode()
     for topic, body in whole.items():
