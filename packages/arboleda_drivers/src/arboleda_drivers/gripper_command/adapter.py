@@ -25,7 +25,7 @@ class GripperCommand(ActionClientDriver):
     def type_name(self) -> str:
         return TYPES[self.settings.type]
 
-    def machine(self, devices: Sequence[Robot]) -> Machine:
+    def mover(self, devices: Sequence[Robot]) -> Machine:
         return machine(devices, self.settings)
 
     def listen(self, node: Any) -> None:

@@ -20,7 +20,7 @@ class FollowJointTrajectory(ActionClientDriver):
     package = "control_msgs"
     type_name = "FollowJointTrajectory"
 
-    def machine(self, devices: Sequence[Robot]) -> Machine:
+    def mover(self, devices: Sequence[Robot]) -> Machine:
         return machine(devices, self.settings)
 
     def listen(self, node: Any) -> None:

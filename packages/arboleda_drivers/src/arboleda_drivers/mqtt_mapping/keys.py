@@ -54,10 +54,10 @@ class Still:
 class Keys:
     """Keys of the driver `mqtt`: what a device hears and says at its topics.
 
-    Without `broker` it is at the plant's. `accepted`, `done` and `failed` are for all verbs. It is there while
-    `online` is said last, and nothing for `silent_after_s` is silence; at least one of them is needed. `ask`
-    has it tell its facts and its state where some are not known; it never tells those that are `unheard`.
-    `names` are names of devices in their topics, where these differ from the plant's.
+    Without `broker` it is at the plant's. `accepted`, `done` and `failed` are for all verbs. It is there
+    while `online` is said last, and nothing for `silent_after_s` is silence; at least one of them is needed.
+    `ask` has it tell its facts and its state where some are not known; it never tells those that are
+    `unheard`. `names` are names of devices in their topics, where these differ from the plant's.
     """
 
     broker: str = ""

@@ -46,7 +46,7 @@ class NavigateToPose(_Nav2):
 
     type_name = "NavigateToPose"
 
-    def machine(self, devices: Sequence[Robot]) -> Machine:
+    def mover(self, devices: Sequence[Robot]) -> Machine:
         return to_pose(devices, self.settings)
 
     def goal(self, action: Any, goal: Route) -> Any:
@@ -63,7 +63,7 @@ class FollowWaypoints(_Nav2):
 
     type_name = "FollowWaypoints"
 
-    def machine(self, devices: Sequence[Robot]) -> Machine:
+    def mover(self, devices: Sequence[Robot]) -> Machine:
         return waypoints(devices, self.settings)
 
     def goal(self, action: Any, goal: Route) -> Any:

@@ -10,7 +10,6 @@ from arboleda.drivers import DriverError, Value, among
 from arboleda_drivers.meaning import Meaning, as_text
 from arboleda_drivers.paths import FIELD, steps
 
-
 TYPES = {"action": "action", "service": "srv", "publish": "msg", "topic": "msg"}
 FORMS = {
     "action": "turtlesim/action/RotateAbsolute",
