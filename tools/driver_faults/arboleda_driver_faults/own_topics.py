@@ -131,9 +131,9 @@ class Loopback:
         while True:
             sent, arrived = [*self.line.sent(self._now)], [*self.line.arrived(self._now)]
             for each in sent:
-                self._say(self._thing.heard(self._now, each.topic, each.payload))
+                self._say(self._thing.heard(self._now, each.topic, each.payload, each.about))
             for each in arrived:
-                message = Delivery(self._now, each.topic, each.payload, False)
+                message = Delivery(self._now, each.topic, each.payload, False, each.about)
                 self._do(self._driver.heard(self._now, message))
             if not (sent or arrived):
                 return

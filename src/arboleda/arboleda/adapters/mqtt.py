@@ -144,7 +144,7 @@ class MqttClient:
                 publication.payload,
                 publication.qos,
                 publication.retain,
-                self._expiry(publication),
+                self._properties(publication),
             )
             if info.rc != MQTTErrorCode.MQTT_ERR_SUCCESS:
                 raise NotConnected(
@@ -184,12 +184,17 @@ class MqttClient:
         if self._thread.ident is not None:
             self._thread.join()
 
-    def _expiry(self, publication: Publication) -> Properties | None:
-        """The expiry of a command, after which a broker drops it; MQTT 5 only, else None."""
-        if self._version != MQTTProtocolVersion.MQTTv5 or publication.retain or publication.qos == 0:
+    def _properties(self, publication: Publication) -> Properties | None:
+        """The expiry of a command, after which a broker drops it, and its answer; MQTT 5 only, else None."""
+        if self._version != MQTTProtocolVersion.MQTTv5:
             return None
         properties = Properties(PacketTypes.PUBLISH)
-        properties.MessageExpiryInterval = EXPIRY_S
+        if not publication.retain and publication.qos > 0:
+            properties.MessageExpiryInterval = EXPIRY_S
+        if publication.reply:
+            properties.ResponseTopic = publication.reply
+        if publication.about:
+            properties.CorrelationData = publication.about
         return properties
 
     # --- the client's thread ---
@@ -313,9 +318,8 @@ class MqttClient:
             self._up(paho)
 
     def _received(self, paho: Client, _userdata: Any, message: MQTTMessage) -> None:
-        delivery = Delivery(
-            at=self._clock(), topic=message.topic, payload=bytes(message.payload), retain=message.retain
-        )
+        about = getattr(message.properties, "CorrelationData", b"")
+        delivery = Delivery(self._clock(), message.topic, bytes(message.payload), message.retain, about)
         if paho is self._paho:
             self._on_event(delivery)
         else:  # a broker may deliver before it has answered the subscription

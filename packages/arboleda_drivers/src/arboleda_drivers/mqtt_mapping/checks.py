@@ -36,9 +36,9 @@ def evidence(settings: Keys, device: Device) -> Evidence:
 def _names_command(settings: Keys, verb: DeviceVerb) -> bool:
     """True where a message about its end, or its answer, names the command."""
     if verb.effect is Effect.QUERY:
-        return bool(settings.verbs[verb.name].id)
+        return settings.verbs[verb.name].names_command
     done = settings.ends(verb.name)
-    return done is not None and bool(done.id)
+    return done is not None and done.names_command
 
 
 def problems(settings: Keys, device: Robot) -> Iterator[Problem]:
@@ -97,7 +97,7 @@ def _verb(settings: Keys, verb: DeviceVerb) -> Iterator[Problem]:
     yield from checks.answer(place, verb, hint, mapped=mapped.answer is not None)
     if mapped.answer is not None and (sentence := mapped.answer.problem(checks.answers(verb))):
         yield (*place, "answer"), sentence
-    if mapped.answer is not None and verb.effect is Effect.QUERY and not mapped.id:
+    if mapped.answer is not None and verb.effect is Effect.QUERY and not mapped.names_command:
         why = "its answer has to name the command: say where, id: PATH"
         yield place, f"{why}; where it names none, let a recipe read a fact instead"
     yield from _ids(settings, verb)
@@ -111,10 +111,14 @@ def _sent(place: Place, sent: Sent, parameters: list[str]) -> Iterator[Problem]:
 
 def _ids(settings: Keys, verb: DeviceVerb) -> Iterator[Problem]:
     """A problem where an answer has to name a command that was sent without its id."""
-    named = any({ID, NUMBER} & sent.names for sent in settings.verbs[verb.name].send)
-    failed = settings.fails(verb.name)
-    is_named = _names_command(settings, verb) or (failed is not None and bool(failed.id))
-    if is_named and not named:
+    mapped, failed = settings.verbs[verb.name], settings.fails(verb.name)
+    named = any({ID, NUMBER} & sent.names for sent in mapped.send)
+    is_named = _names_command(settings, verb) or (failed is not None and failed.names_command)
+    told = (settings.accepts(verb.name), settings.ends(verb.name), failed, mapped.answer)
+    if any(each is not None and each.is_reply for each in told):
+        if not any(sent.reply for sent in mapped.send):
+            yield ("verbs", verb.name, "send"), "its answer is heard on {reply}; send it with reply: true"
+    elif is_named and not named:
         how = f"send it with {{id}}, a text, or {{number}}, a whole number from 1 to {MOST}"
         yield ("verbs", verb.name, "send"), f"its end names the command; {how}"
 

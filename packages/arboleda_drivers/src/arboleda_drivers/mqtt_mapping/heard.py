@@ -16,13 +16,15 @@ from arboleda_drivers.paths import NOTHING, json_at, steps
 LONGEST_SHOWN = 80  # characters of a message in a sentence
 LONGEST = 65536  # bytes of a message that is read
 NAME = re.compile(r"\{(\w+)\}")
+REPLY = "{reply}"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Source:
     """Place of a value: a topic, and in its messages a path into JSON, or a pattern whose group is the value.
 
-    Without either the whole text is the value. `{device}` in a topic is the device's name there.
+    Without either the whole text is the value. `{device}` in a topic is the device's name there. The topic
+    `{reply}` is where it answers what was sent with `reply`.
     """
 
     hear: str = ""
@@ -56,7 +58,12 @@ class Source:
 
     def named(self, device: str) -> str:
         """The topic for a device of that name."""
-        return self.hear.replace("{device}", device)
+        return self.hear.replace("{device}", device).replace(REPLY, reply_to(device))
+
+    @property
+    def is_reply(self) -> bool:
+        """True for what it says in answer to a command, which that answer names."""
+        return self.hear == REPLY
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -103,8 +110,15 @@ class Says(Source):
             return ()
         return tuple(self.equals) if isinstance(self.equals, list | tuple) else (self.equals,)
 
-    def is_said(self, payload: bytes, ids: Sequence[str] = ()) -> bool:
+    @property
+    def names_command(self) -> bool:
+        """True where a message says it of one command."""
+        return bool(self.id) or self.is_reply
+
+    def is_said(self, payload: bytes, ids: Sequence[str] = (), about: bytes = b"") -> bool:
         """True for a message that says it of a command with one of these ids."""
+        if self.is_reply and about not in map(str.encode, ids):
+            return False
         raw = self.raw(payload) if self.path or self.pattern or self.values else ""
         if raw is NOTHING or (self.values and not any(is_meant(raw, each) for each in self.values)):
             return False
@@ -114,6 +128,11 @@ class Says(Source):
         """The reason that a message tells; "" for none."""
         found = json_at(self.why, parsed(payload)) if self.why else NOTHING
         return "" if found is NOTHING or found is None else str(found)
+
+
+def reply_to(device: str) -> str:
+    """The topic on which a device answers over MQTT 5."""
+    return f"arboleda/replies/{device}"
 
 
 def decoded(payload: bytes) -> str:

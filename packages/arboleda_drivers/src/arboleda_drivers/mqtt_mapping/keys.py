@@ -8,7 +8,7 @@ from typing import Literal
 
 from arboleda.drivers import DriverError
 
-from .heard import Heard, Says, Source
+from .heard import REPLY, Heard, Says, Source
 from .sent import Sent
 
 BROKER = "127.0.0.1:1883"  # of a plant that has found its port free
@@ -27,6 +27,11 @@ class Verb:
     failed: Says | None = None
     answer: Heard | None = None
     id: str = ""
+
+    @property
+    def names_command(self) -> bool:
+        """True where the answer to a query names its command."""
+        return bool(self.id) or (self.answer is not None and self.answer.is_reply)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,6 +92,8 @@ class Keys:
             raise DriverError(f"silent_after_s is {self.silent_after_s:g}; allowed: 0.5 to 86400")
         if self.state is not None and self.still is not None:
             raise DriverError("has state and still; keep one of them")
+        if self.version != "5" and any(each.is_reply for each in self.sources):
+            raise DriverError(f'only MQTT 5 has {REPLY}; write version: "5"')
 
     @property
     def address(self) -> str:

@@ -157,9 +157,8 @@ class MappedDevice:
         self._end(**({"rejected": id, "refusal": why} if is_refused else {"failed": id, "failure": why}))
 
     def _says(self, says: Says | None, message: Delivery, order: Order) -> bool:
-        return (
-            says is not None and self._link.is_on(says, message) and says.is_said(message.payload, order.ids)
-        )
+        is_on = self._link.is_on(says, message)
+        return is_on and says is not None and says.is_said(message.payload, order.ids, message.about)
 
     def _see_answer(self, message: Delivery, order: Order) -> None:
         verb, id = self._settings.verbs[order.command.verb], order.command.id
@@ -211,7 +210,7 @@ class MappedDevice:
     def _is_named(self, command: VerbCommand) -> bool:
         """True where no late message can be taken for the end of another order."""
         ends = self._settings.ends(command.verb)
-        return ends is None or bool(ends.id)
+        return ends is None or ends.names_command
 
     def unsent(self, command: Command) -> None:
         """Forget an order whose messages could not leave."""

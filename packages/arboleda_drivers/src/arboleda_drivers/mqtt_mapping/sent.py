@@ -12,7 +12,7 @@ from arboleda.drivers import DriverError, Value
 from arboleda.wire.transport import Publication
 from arboleda_drivers.meaning import SCALARS, as_text, is_meant
 
-from .heard import NAME, decoded, parsed
+from .heard import NAME, decoded, parsed, reply_to
 
 DEVICE, ID, NUMBER = "device", "id", "number"
 OURS = (DEVICE, ID, NUMBER)
@@ -27,7 +27,7 @@ class Sent:
 
     A payload with keys or a list is sent as JSON; a text in it that is `{name}` alone is the value itself.
     `{id}` and `{number}`, from 1 to `MOST`, are those of the command. `words` are the values to send in place
-    of words.
+    of words. With `reply` it names the topic for an answer.
     """
 
     topic: str
@@ -35,6 +35,7 @@ class Sent:
     words: dict[str, Any] = field(default_factory=dict)
     qos: int = 0
     retain: bool = False
+    reply: bool = False
 
     def __post_init__(self) -> None:
         if not self.topic or {"+", "#", "\0"} & set(self.topic):
@@ -57,7 +58,8 @@ class Sent:
             payload = _filled(as_text(self.payload), given)
         else:
             payload = json.dumps(_filled_json(self.payload, given), separators=(",", ":"))
-        return Publication(_filled(self.topic, given), payload.encode(), self.qos, self.retain)
+        answer = (reply_to(str(given[DEVICE])), str(given.get(ID, "")).encode()) if self.reply else ()
+        return Publication(_filled(self.topic, given), payload.encode(), self.qos, self.retain, *answer)
 
     def values(self, topic: str, payload: bytes) -> dict[str, object] | None:
         """The values with which a message was filled, as they were sent; None for any other message."""

@@ -87,9 +87,10 @@ class Rig:
     def stop(self, mode: StopMode, id: str = "s1") -> None:
         self._do(self.driver.command(self.now, Stop(id=id, robot=self.device.name, mode=mode)))
 
-    def tell(self, topic: str, payload: str, *, retain: bool = False) -> None:
+    def tell(self, topic: str, payload: str, *, retain: bool = False, about: str = "") -> None:
         """Say something in place of the device."""
-        self._do(self.driver.heard(self.now, Delivery(self.now, topic, payload.encode(), retain)))
+        said = Delivery(self.now, topic, payload.encode(), retain, about.encode())
+        self._do(self.driver.heard(self.now, said))
 
     def run(self, seconds: float) -> None:
         for _ in range(round(seconds / STEP_S)):
@@ -108,11 +109,11 @@ class Rig:
                 self.log.append(message.text)
         for each in sent:
             if any(matches(topic, each.topic) for topic in self.thing.topics):
-                self._say(self.thing.heard(self.now, each.topic, each.payload))
+                self._say(self.thing.heard(self.now, each.topic, each.payload, each.about))
 
     def _say(self, messages: list[Publication]) -> None:
         for message in messages:
-            delivery = Delivery(self.now, message.topic, message.payload, False)
+            delivery = Delivery(self.now, message.topic, message.payload, False, message.about)
             self._do(self.driver.heard(self.now, delivery))
 
 

@@ -24,6 +24,7 @@ from .test_mqtt_mapping_machine import (
     OVEN_MAPPING,
     PLUG,
     PLUG_MAPPING,
+    REPLY_MAPPING,
 )
 
 BOOL = FactType(type=bool, words=(), first=False)
@@ -36,6 +37,14 @@ STATE = "state: {hear: door/state, words: {stopped: [open, closed], moving: [ope
 @pytest.mark.parametrize(
     ("kind", "mapping", "old", "new", "told"),
     [
+        (PLUG, REPLY_MAPPING, 'version: "5"', "", "only MQTT 5 has {reply}; write version"),
+        (
+            PLUG,
+            REPLY_MAPPING,
+            " reply: true,",
+            "",
+            "its answer is heard on {reply}; send it with reply: true",
+        ),
         (PLUG, PLUG_MAPPING, ONLINE, "", "nothing says whether the device is there; write online"),
         (PLUG, PLUG_MAPPING, "{power: {hear", "{powr: {hear", "a thing has no fact powr; there are power"),
         (PLUG, PLUG_MAPPING, 'payload: "{to}"', 'payload: "{too}"', "there is no parameter too; "),

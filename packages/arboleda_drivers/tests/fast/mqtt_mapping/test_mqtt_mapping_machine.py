@@ -19,6 +19,15 @@ online: {hear: "tele/{device}/LWT", equals: Online}
 facts: {power: {hear: "stat/{device}/POWER", words: {on: "ON", off: "OFF"}}}
 verbs: {turn: {send: [{topic: "cmnd/{device}/POWER", payload: "{to}", words: {on: "ON", off: "OFF"}}]}}
 """
+LAMP = PLUG.replace("switch", "process, on_stop: finish")
+REPLY_MAPPING = (
+    PLUG_MAPPING.replace('"{to}",', '"{to}", reply: true,')
+    + """
+version: "5"
+done: {hear: "{reply}", path: power}
+failed: {hear: "{reply}", path: error, why: error}
+"""
+)
 COVER = """
 facts: {open: [shut, open]}
 verbs: {move: {effect: motion, with: {to: [shut, open]}, sets: {open: $to}, takes_s: 2, at_most_s: 8}}
@@ -109,6 +118,29 @@ def test_a_switch_sends_its_words_and_the_fact_comes_back(plug: Rig) -> None:
     assert dict(plug.report.facts or ()) == {"power": "off"}
     plug.run(0.5)
     assert dict(plug.report.facts or ()) == {"power": "on"}
+
+
+def test_an_answer_of_mqtt_5_ends_the_order_that_it_is_about(tmp_path: Path) -> None:
+    plug = Rig(*device_in(plant_of(tmp_path, LAMP, REPLY_MAPPING)))
+    assert plug.device.evidence is Evidence.IDS
+    plug.faults.switch("mute", on=True)
+    plug.give("turn", to="on")
+    assert (plug.sent[-1].reply, plug.sent[-1].about) == ("arboleda/replies/thing", b"c1")
+    for about in ("", "c0"):
+        plug.tell("arboleda/replies/thing", '{"power": "ON"}', about=about)
+        assert plug.report.done is None
+    plug.tell("arboleda/replies/thing", '{"power": "ON"}', about="c1")
+    assert plug.report.done == "c1"
+    plug.give("turn", "c2", to="off")
+    plug.tell("arboleda/replies/thing", '{"error": "hot"}', about="c2")
+    assert (plug.report.failed, plug.report.failure) == ("c2", "hot")
+
+
+def test_the_virtual_device_answers_as_its_mapping_has_it(tmp_path: Path) -> None:
+    plug = Rig(*device_in(plant_of(tmp_path, LAMP, REPLY_MAPPING)))
+    plug.give("turn", to="on")
+    plug.run(0.5)
+    assert (plug.report.done, dict(plug.report.facts or ())) == ("c1", {"power": "on"})
 
 
 def test_an_order_is_neither_retained_nor_sent_twice_by_default(plug: Rig) -> None:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from arboleda.drivers import Device, FactType, OnStop, Value, VerbCommand, Work
 from arboleda.wire.transport import Publication
 from arboleda_drivers.meaning import UnreadableValue
-from arboleda_drivers.mqtt_mapping.heard import NAME, Heard, Says
+from arboleda_drivers.mqtt_mapping.heard import NAME, Heard, Says, reply_to
 from arboleda_drivers.mqtt_mapping.keys import Keys
 from arboleda_drivers.mqtt_mapping.sent import DEVICE, ID, NUMBER, Sent
 
@@ -93,8 +93,8 @@ class VirtualMapped:
             out += self._all()
         return self._spoken(out)
 
-    def heard(self, now: float, topic: str, payload: bytes) -> list[Publication]:
-        """Take a message."""
+    def heard(self, now: float, topic: str, payload: bytes, about: bytes = b"") -> list[Publication]:
+        """Take a message; `about` is its correlation data, which the answer has again."""
         if {"deaf", "vanish"} & {*self._faults}:
             return []
         settings = self._settings
@@ -103,7 +103,8 @@ class VirtualMapped:
                 return self._spoken(self._stop() if is_stop else self._all())
         for name in settings.verbs:
             if (found := self._order(name, topic, payload)) is not None:
-                return self._spoken(self._take(now, *found))
+                command, id = found
+                return self._spoken(self._take(now, command, about.decode(errors="replace") or id))
         return self._spoken(self._all())  # it is asked, or told something strange
 
     def _stop(self) -> list[Publication]:
@@ -169,11 +170,11 @@ class VirtualMapped:
             answer = command.definition.answer_type.samples[0]
             said: list[Said] = [(verb.answer, verb.answer.path, verb.answer.shown(answer))]
             said += [(verb.answer, verb.id, doing.id)] if verb.id else []
-            return [*out, *self._published(said)]
+            return [*out, *self._published(said, doing.id)]
         return [*out, *self._says(settings.ends(command.verb), doing.id)]
 
     def _says(self, says: Says | None, id: object, why: str = "") -> list[Publication]:
-        return [] if says is None else self._published([*of_says(says, id, why)])
+        return [] if says is None else self._published([*of_says(says, id, why)], id)
 
     def _all(self) -> list[Publication]:
         """Its facts and its state."""
@@ -212,8 +213,12 @@ class VirtualMapped:
         except UnreadableValue:
             return False
 
-    def _published(self, said: Sequence[Said]) -> list[Publication]:
-        return [Publication(topic, payload, 0) for topic, payload in messages(said, self._name)]
+    def _published(self, said: Sequence[Said], id: object = "") -> list[Publication]:
+        reply, about = reply_to(self._name), str(id).encode()
+        return [
+            Publication(topic, payload, 0, about=about if topic == reply else b"")
+            for topic, payload in messages(said, self._name)
+        ]
 
     def _spoken(self, out: list[Publication]) -> list[Publication]:
         if {"mute", "vanish"} & {*self._faults}:

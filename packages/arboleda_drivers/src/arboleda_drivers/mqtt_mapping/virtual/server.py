@@ -26,8 +26,8 @@ LONGEST_WAIT_S = 0.1  # until a fault that was switched is noticed
 class Client:
     """One device at the broker; it connects, and is cut off while the fault `vanish` is on."""
 
-    def __init__(self, device: VirtualMapped, broker: str, name: str, faults: Collection[str]) -> None:
-        self._device, self._broker, self._name, self._faults = device, broker, name, faults
+    def __init__(self, device: VirtualMapped, settings: Settings, name: str, faults: Collection[str]) -> None:
+        self._device, self._settings, self._name, self._faults = device, settings, name, faults
         self._events: SimpleQueue[Delivery | Connection] = SimpleQueue()
         self._mqtt: MqttClient | None = None
 
@@ -56,11 +56,12 @@ class Client:
     def _connect(self) -> None:
         self._mqtt = MqttClient(
             f"virtual-{self._name}",
-            address(self._broker),
+            address(self._settings.address),
             on_event=self._events.put,
             subscriptions=self._device.topics,
             will=self._device.will(),
             credentials=login(),
+            version=self._settings.version,
         )
         self._mqtt.start()
 
@@ -68,7 +69,7 @@ class Client:
         if isinstance(event, Connection):
             self._publish(self._device.begin() if event.up else [])
         elif any(matches(topic, event.topic) for topic in self._device.topics):
-            self._publish(self._device.heard(now, event.topic, event.payload))
+            self._publish(self._device.heard(now, event.topic, event.payload, event.about))
 
     def _publish(self, messages: Sequence[Publication]) -> None:
         for message in messages:
@@ -91,7 +92,7 @@ class Server:
         at = address(self._broker)
         self._own = None if is_there else EmbeddedBroker(at.host, at.port)
         self._clients = [
-            Client(VirtualMapped(device, settings, faults), self._broker, device.name, faults)
+            Client(VirtualMapped(device, settings, faults), settings, device.name, faults)
             for device, settings in found
         ]
         self._names = ", ".join(device.name for device, _ in found)
