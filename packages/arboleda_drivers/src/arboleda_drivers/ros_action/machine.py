@@ -9,6 +9,7 @@ from arboleda.drivers import Command, Home, MotionState, Report, Stop, StopMode,
 from arboleda_drivers.connections.link import CommandNotSent, CommandRequest
 from arboleda_drivers.connections.receipts import Receipts
 
+from .asks import ANSWER_S, Asks
 from .events import (
     CancelAll,
     CancelAnswer,
@@ -28,10 +29,9 @@ from .goal_history import GoalHistory
 from .health import CallAnswer, Health, HealthReading, HealthWatch
 from .homing import LONGEST_WORD, Homing
 from .mover import Mover, NoGoal
+from .presence import GONE_S, End, Presence
 
-ANSWER_S = 2.0  # a server answers a goal or a cancel in milliseconds
 SPARE_S = 0.5  # the plant's own deadline comes first
-GONE_S = 1.0  # a restarted server is away for a moment, and discovery takes another
 REPORT_S = 0.1  # a report at least so often
 
 
@@ -39,20 +39,16 @@ class Machine:
     """State machine of one device behind one action; `step` takes events and returns actions and reports."""
 
     def __init__(self, mover: Mover, action: str, health: Health | None = None) -> None:
-        self._mover, self._action = mover, action
+        self._mover, self._end_of = mover, End("action", action)
         self._health = HealthWatch(health)
         self._history = GoalHistory(mover.name)
         self._out: list[Message] = []
         self._receipts = Receipts()
         self._homing = Homing(self._health, self._out, self._receipts)
-        self._servers: tuple[int, ...] = ()
-        self._server: int | None = None  # the last one that was there alone
-        self._alone_at = -math.inf  # the time at which it was
+        self._presence = Presence([self._end_of])
+        self._asks = Asks({self._end_of: CancelAll()}, self._out, self._receipts)
         self._why = ""  # the reported reason for a missing link
         self._goal: Goal | None = None
-        self._cancel_at: float | None = None  # time since which a cancel is unanswered
-        self._cancelled_at = -math.inf  # time of the last cancel
-        self._stop_id = ""
         self._latched = False
         self._measured_at = math.inf  # time of the first measurement
 
@@ -76,7 +72,8 @@ class Machine:
         if isinstance(event, CommandRequest):
             self._ask(now, event.command)
         elif isinstance(event, ServersFound):
-            self._find(now, event.servers)
+            if self._presence.find(now, {self._end_of: event.servers}):
+                self._forget()
         elif isinstance(event, Measurement):
             self._see(now, event)
         elif isinstance(event, GoalAnswer):
@@ -96,8 +93,7 @@ class Machine:
 
     def _pass_time(self, now: float) -> None:
         goal = self._goal
-        if self._cancel_at is not None and now >= self._cancel_at + ANSWER_S:
-            self._cancel(now)
+        self._asks.pass_time(now)
         self._homing.pass_time(now)
         if goal is None:
             return
@@ -113,10 +109,10 @@ class Machine:
             self._drop(failed=goal.id, failure="goal_unknown_to_the_server")
         elif goal.succeeded_at is not None:
             self._believe(now, goal, goal.succeeded_at)
-        elif goal.stopped and self._cancel_at is None:
+        elif goal.stopped:
             # The server has cancelled all it has, and the device rests: no result is waited for.
-            since = self._cancelled_at + ANSWER_S
-            if now >= since and self._mover.rests(now, self._cancelled_at):
+            cancelled_s = self._asks.answered_for_s(now, self._end_of)
+            if cancelled_s >= ANSWER_S and self._mover.rests(now, now - cancelled_s):
                 self._drop()
 
     def _believe(self, now: float, goal: Goal, since: float) -> None:
@@ -145,37 +141,24 @@ class Machine:
 
     def _missing(self, now: float) -> str:
         """The reason why the device cannot be reached; "" if it can."""
-        if now >= self._alone_at + GONE_S and not self._servers:
-            return f"there is no action server {self._action}"
-        if now >= self._alone_at + GONE_S:
-            return f"there are {len(self._servers)} action servers {self._action}; one is needed"
-        return self._mover.missing(now) or self._health.missing
-
-    def _find(self, now: float, servers: tuple[int, ...]) -> None:
-        self._servers = servers
-        if len(servers) != 1:
-            return
-        self._alone_at = now
-        if servers[0] == self._server:
-            return
-        if self._server is not None:  # it was started anew, and knows of no goal
-            self._forget()
-        self._server, self._receipts.news = servers[0], True
+        return self._presence.missing(now) or self._mover.missing(now) or self._health.missing
 
     def _lose(self, now: float, why: str) -> None:
         """Lose the link, and open work; a goal that still runs is cancelled once the server is back."""
         if self._goal is not None:
             self._goal.stopped, self._goal.succeeded_at = True, None
-            self._cancel_at = -math.inf  # at once, where it is back
-        self._homing.id = self._stop_id = ""
+        self._asks.leave([] if self._goal is None else [self._end_of])
+        self._homing.id = ""
         if why != self._why:
             self._why = why
             self._out.append(lost(self._mover.name, at=now, why=why))
 
     def _forget(self) -> None:
-        self._goal = self._cancel_at = None
+        """The server was started anew, and knows of no goal."""
+        self._goal, self._homing.id = None, ""
         self._history.forget()
-        self._homing.id = self._stop_id = ""
+        self._asks.leave(())
+        self._asks.forget(self._end_of)
         self._receipts.forget()
         self._mover.settle(None)
 
@@ -234,17 +217,15 @@ class Machine:
             self._latched = command.mode is StopMode.LATCH
         self._receipts.news = True
         if command.mode is StopMode.CLEAR:
-            self._receipts.tell(accepted=command.id)
+            self._asks.clear(now, command.id)
             return
         self._homing.id = ""
         if self._goal is not None:
             self._goal.stopped, self._goal.succeeded_at = True, None
-        self._stop_id = command.id
-        self._cancel(now)
+        self._asks.stop(now, command.id)
 
     def _cancel(self, now: float) -> None:
-        self._cancel_at, self._receipts.news = now, True
-        self._out.append(CancelAll())
+        self._asks.begin(now, self._end_of)
 
     # Answers of the server.
 
@@ -278,16 +259,12 @@ class Machine:
             goal.succeeded_at = now
 
     def _hear_cancel(self, now: float, answer: CancelAnswer) -> None:
-        if self._cancel_at is None:
+        if not self._asks.is_open(self._end_of):
             return
-        if answer.refused and self._goal is not None:
-            self._receipts.reject(self._stop_id, "cancel_refused")
-            self._stop_id = ""
-            return  # repeated after ANSWER_S
-        self._cancel_at, self._cancelled_at = None, now
-        self._history.leave_behind()
-        self._receipts.tell(accepted=self._stop_id)
-        self._stop_id = ""
+        is_refused = answer.refused and self._goal is not None
+        if not is_refused:
+            self._history.leave_behind()
+        self._asks.answer(now, self._end_of, "cancel_refused" if is_refused else "")
 
     # What the plant hears.
 
@@ -301,7 +278,7 @@ class Machine:
         self._receipts.tell(**ids, failure=plain(failure, LONGEST_WORD))
 
     def _state(self, now: float) -> MotionState:
-        at_work = self._goal is not None or self._cancel_at is not None
+        at_work = self._goal is not None or self._asks.is_stopping
         # A device that waits at an obstacle rests, and goes on by itself; a grip may never end.
         goes_on = self._history.has_earlier_goal and not self._mover.replaces
         if at_work or goes_on or not self._mover.rests(now):
@@ -317,7 +294,7 @@ class Machine:
         return Report(
             at=now,
             robot=self._mover.name,
-            boot_id=self._server,
+            boot_id=self._presence.boot,
             state=self._state(now),
             homed=not self._homing.id,
             receipt=self._history.receipt,

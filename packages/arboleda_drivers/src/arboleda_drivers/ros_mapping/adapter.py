@@ -11,6 +11,7 @@ from arboleda.drivers import Command, DriverError, NotSent, Robot, VerbCommand, 
 from arboleda_drivers.ros_action.action_link import ActionLink
 from arboleda_drivers.ros_action.events import Said
 from arboleda_drivers.ros_action.interfaces import interface
+from arboleda_drivers.ros_action.presence import End
 from arboleda_drivers.ros_action.ros_driver import RosDriver
 from arboleda_drivers.ros_mapping.events import (
     ActionSaid,
@@ -22,7 +23,7 @@ from arboleda_drivers.ros_mapping.events import (
     Send,
 )
 from arboleda_drivers.ros_mapping.heard_facts import Told
-from arboleda_drivers.ros_mapping.keys import Call, End, Fields, Qos
+from arboleda_drivers.ros_mapping.keys import Call, Fields, Qos
 from arboleda_drivers.ros_mapping.machine import Machine
 from arboleda_drivers.ros_mapping.settings import Settings
 from arboleda_drivers.ros_mapping.types import message_of

@@ -8,10 +8,10 @@ from typing import Any
 from arboleda.drivers import Report
 from arboleda_drivers.connections.link import CommandNotSent, CommandRequest
 from arboleda_drivers.ros_action.events import Said, UnusableMessage
+from arboleda_drivers.ros_action.presence import End, Found
 
 from .heard_facts import Told
-from .keys import Call, End
-from .presence import Found
+from .keys import Call
 
 
 @dataclass(frozen=True, kw_only=True)

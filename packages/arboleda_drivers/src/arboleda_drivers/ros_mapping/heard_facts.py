@@ -9,8 +9,9 @@ from dataclasses import replace
 from arboleda.drivers import Device, DriverError, Facts, FactType, Value
 from arboleda_drivers.paths import field_at
 from arboleda_drivers.plc.plc_snapshot import STATES
+from arboleda_drivers.ros_action.presence import End
 
-from .keys import End, Keys, Source
+from .keys import Keys, Source
 
 Told = End | tuple[str, str]
 """Where something is told: a topic, or ("feedback", verb) or ("result", verb)."""

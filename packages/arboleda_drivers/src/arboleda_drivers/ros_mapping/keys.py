@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
 from arboleda.drivers import DriverError, Value, among
 from arboleda_drivers.meaning import Meaning, as_text
 from arboleda_drivers.paths import FIELD, steps
+from arboleda_drivers.ros_action.presence import End
 
 TYPES = {"action": "action", "service": "srv", "publish": "msg", "topic": "msg"}
 FORMS = {
@@ -17,14 +18,6 @@ FORMS = {
     "msg": "std_msgs/msg/Bool",
 }
 NOW = "$now"
-
-
-class End(NamedTuple):
-    """Other end of a name: an `action`, a `service`, who hears what we `publish`, or a `topic`
-    that somebody else publishes."""
-
-    kind: str
-    name: str
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -28,17 +28,27 @@ from arboleda_drivers.connections.link import CommandNotSent
 from arboleda_drivers.connections.receipts import Receipts
 from arboleda_drivers.paths import field_at
 from arboleda_drivers.plc.plc_snapshot import STATES
+from arboleda_drivers.ros_action.asks import CLEAR, STOP, Asks
 from arboleda_drivers.ros_action.events import CancelAnswer, GoalAnswer, GoalList, GoalResult, Said, Status
 from arboleda_drivers.ros_action.goal import SETTLE_S
 from arboleda_drivers.ros_action.goal_history import GoalHistory
 from arboleda_drivers.ros_action.homing import LONGEST_WORD
+from arboleda_drivers.ros_action.presence import GONE_S, End, Presence
 
-from .asks import CLEAR, STOP, Asks
-from .events import ActionSaid, EndsFound, Event, GoalRequest, Message, MessageHeard, Response, Send
+from .events import (
+    ActionSaid,
+    CancelGoals,
+    EndsFound,
+    Event,
+    GoalRequest,
+    Message,
+    MessageHeard,
+    Response,
+    Send,
+)
 from .heard_facts import ToldFacts
 from .jobs import Job, failure, job
-from .keys import End, Keys
-from .presence import GONE_S, Presence
+from .keys import Keys
 
 SHOWN_S = 1.0  # within it a topic shows what a result has said
 REPORT_S = 0.1  # a report at least so often
@@ -65,7 +75,15 @@ class Machine:
         self._jobs: dict[End, Job] = {}
         self._out: list[Message] = []
         self._receipts = Receipts()
-        self._asks = Asks(keys, self._histories, self._out, self._receipts)
+        calls = {key: call for key, call in ((STOP, keys.halt), (CLEAR, keys.clear)) if call is not None}
+        self._asks = Asks(
+            {end: CancelGoals(end=end) for end in self._histories}
+            | {key: Send(call=call, id=key) for key, call in calls.items()},
+            self._out,
+            self._receipts,
+            answer_s=keys.answer_s,
+            unanswered=[key for key, call in calls.items() if call.publish],
+        )
         self._latched, self._why = False, ""
         self._there_at = math.inf  # since when all are there
 

@@ -17,6 +17,7 @@ from arboleda_drivers.ros_action.events import (
     ListedGoal,
     Status,
 )
+from arboleda_drivers.ros_action.presence import End
 from arboleda_drivers.ros_mapping.events import (
     ActionSaid,
     EndsFound,
@@ -26,7 +27,6 @@ from arboleda_drivers.ros_mapping.events import (
     MessageHeard,
     Response,
 )
-from arboleda_drivers.ros_mapping.keys import End
 from arboleda_drivers.ros_mapping.machine import Machine
 
 RECIPES = """

@@ -10,8 +10,8 @@ import pytest
 from arboleda.drivers import Evidence, MotionState, Report, Stop, StopMode
 from arboleda_drivers.connections.link import CommandNotSent
 from arboleda_drivers.ros_action.events import Status
+from arboleda_drivers.ros_action.presence import End
 from arboleda_drivers.ros_mapping.events import CancelGoals, MessageHeard, Response, Send
-from arboleda_drivers.ros_mapping.keys import End
 
 from .rover import GO, GRIP, LOOK, PLANT, POSE, Rig, rover
 

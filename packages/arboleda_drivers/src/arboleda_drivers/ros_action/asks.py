@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Mapping
+from typing import Any
 
 from arboleda_drivers.connections.receipts import Receipts
 
-from .events import CancelGoals, Message, Send
-from .keys import End, Keys
+from .presence import End
+
+ANSWER_S = 2.0  # a server answers a goal or a cancel in milliseconds
 
 STOP, CLEAR = "halt", "clear"
 Asked = End | str
@@ -16,14 +18,22 @@ Asked = End | str
 
 
 class Asks:
-    """Cancels and calls; each is repeated until it is answered. A stop is taken once all of them are."""
+    """Cancels and calls; each is repeated until it is answered. A stop is taken once all of them are.
 
-    def __init__(self, keys: Keys, actions: Iterable[End], out: list[Message], receipts: Receipts) -> None:
-        self._out, self._receipts, self._answer_s = out, receipts, keys.answer_s
-        self._messages: dict[Asked, CancelGoals | Send] = {end: CancelGoals(end=end) for end in actions}
-        for key, call in ((STOP, keys.halt), (CLEAR, keys.clear)):
-            if call is not None:
-                self._messages[key] = Send(call=call, id=key)
+    `messages` are what is sent for each, and the `unanswered` have no answer.
+    """
+
+    def __init__(
+        self,
+        messages: Mapping[Asked, Any],
+        out: list[Any],
+        receipts: Receipts,
+        *,
+        answer_s: float = ANSWER_S,
+        unanswered: Collection[Asked] = (),
+    ) -> None:
+        self._messages, self._out, self._receipts = messages, out, receipts
+        self._answer_s, self._unanswered = answer_s, unanswered
         self._asked_at: dict[Asked, float] = {}  # of those that are not answered
         self._answered_at: dict[Asked, float] = {}
         self._ids = {STOP: "", CLEAR: ""}
@@ -44,11 +54,11 @@ class Asks:
         return -math.inf if self.is_open(key) else now - self._answered_at.get(key, -math.inf)
 
     def begin(self, now: float, key: Asked) -> None:
-        """Send a cancel or a call; what is published has no answer."""
+        """Send a cancel or a call."""
         message = self._messages.get(key)
         if message is None:
             return
-        if not (isinstance(message, Send) and message.call.publish):
+        if key not in self._unanswered:
             self._asked_at[key] = now
         self._receipts.news = True
         self._out.append(message)

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
+from typing import NamedTuple
 from zlib import crc32
-
-from .keys import End
 
 GONE_S = 1.0  # a restarted one is away for a moment, and discovery takes another
 NOBODY = {
@@ -20,6 +19,16 @@ SEVERAL = {
     "service": "there are {} services {}; one is needed",
     "topic": "{} publish {}; one is needed",
 }
+
+
+class End(NamedTuple):
+    """Other end of a name: an `action`, a `service`, who hears what we `publish`, or a `topic`
+    that somebody else publishes."""
+
+    kind: str
+    name: str
+
+
 Found = Mapping[End, tuple[int, ...]]
 
 
