@@ -68,7 +68,7 @@ def _answers(place: Place, answer: Register | None, verb: DeviceVerb) -> Iterato
     hint = "say where the PLC shows its answer, answer: {input: 20}"
     yield from checks.answer(place, verb, hint, mapped=answer is not None)
     if answer is not None and verb.effect is Effect.QUERY:
-        yield from _fits((*place, "answer"), answer, checks.answers(verb))
+        yield from _fits((*place, "answer"), answer, verb.answer_type)
 
 
 def _fits(place: Place, register: Register, fact: FactType) -> Iterator[Problem]:

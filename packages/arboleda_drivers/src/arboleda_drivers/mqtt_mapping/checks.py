@@ -95,7 +95,7 @@ def _verb(settings: Keys, verb: DeviceVerb) -> Iterator[Problem]:
             yield (*place, "send", at, "retain"), f"a retained order stays at the broker: {why}"
     hint = "say where its answer is heard, answer: {hear: TOPIC}, and where it names the command, id: PATH"
     yield from checks.answer(place, verb, hint, mapped=mapped.answer is not None)
-    if mapped.answer is not None and (sentence := mapped.answer.problem(checks.answers(verb))):
+    if mapped.answer is not None and (sentence := mapped.answer.problem(verb.answer_type)):
         yield (*place, "answer"), sentence
     if mapped.answer is not None and verb.effect is Effect.QUERY and not mapped.names_command:
         why = "its answer has to name the command: say where, id: PATH"

@@ -32,7 +32,6 @@ from arboleda.wire.transport import Delivery, Publication
 from arboleda_drivers.connections.link import LogLine
 from arboleda_drivers.meaning import UnreadableValue
 from arboleda_drivers.paths import NOTHING
-from arboleda_drivers.plc.checks import answers
 
 from .heard import Says
 from .keys import Keys
@@ -165,7 +164,7 @@ class MappedDevice:
         if verb.answer is None or not self._says(Says(hear=verb.answer.hear, id=verb.id), message, order):
             return
         if (raw := verb.answer.raw(message.payload)) is not NOTHING:
-            answer = verb.answer.read(raw, answers(order.command.definition))
+            answer = verb.answer.read(raw, order.command.definition.answer_type)
             self._end(accepted=id, answered=id, answer=answer)
 
     def _end(self, **receipts: Any) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -49,7 +49,7 @@ class Sent:
     @property
     def names(self) -> set[str]:
         """The names in it."""
-        return {name for text in (self.topic, *_texts(self.payload)) for name in NAME.findall(text)}
+        return {*NAME.findall(self.topic), *NAME.findall(json.dumps(self.payload))}
 
     def filled(self, values: Mapping[str, Value]) -> Publication:
         """The message with these values."""
@@ -71,17 +71,6 @@ class Sent:
         else:
             is_it = _unfilled_json(self.payload, parsed(payload), found)
         return found if is_it else None
-
-
-def _texts(value: Any) -> Iterator[str]:
-    if isinstance(value, str):
-        yield value
-    elif isinstance(value, Mapping):
-        for each in value.values():
-            yield from _texts(each)
-    elif isinstance(value, list | tuple):
-        for each in value:
-            yield from _texts(each)
 
 
 def _filled(text: str, values: Mapping[str, Any]) -> str:

@@ -56,11 +56,6 @@ def answer(place: Place, verb: DeviceVerb, hint: str, *, mapped: bool) -> Iterat
         yield (*place, "answer"), f"{verb.name} is no query and has no answer"
 
 
-def answers(verb: DeviceVerb) -> FactType:
-    """The type of a query's answers."""
-    return verb.answer_type
-
-
 def proof(device: Device, who: str, *, sequence: bool) -> Iterator[Problem]:
     """A problem if the device's evidence is ids and the mapping has no sequence."""
     if device.evidence is Evidence.IDS and not sequence:
@@ -133,4 +128,4 @@ def shown_answer(place: Place, shown: PlcVariable | None, verb: DeviceVerb, hint
     """Problems of the variable that shows the answer to a query."""
     yield from answer(place, verb, hint, mapped=shown is not None)
     if shown is not None and verb.effect is Effect.QUERY:
-        yield from words((*place, "answer"), shown.words, answers(verb))
+        yield from words((*place, "answer"), shown.words, verb.answer_type)

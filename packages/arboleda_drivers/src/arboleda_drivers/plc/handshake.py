@@ -23,7 +23,6 @@ from arboleda.drivers import (
     quoted,
 )
 
-from .checks import answers
 from .numbers import LAST, Numbers
 from .plc_snapshot import STATES, UNNAMED, PlcSnapshot, ProgramWatch, Question, UnreadableValue, report
 from .variables import PlcVariable, count, yes
@@ -141,7 +140,7 @@ class Handshake:
         self._was_busy = self._busy
         answer = self._settings.verbs[command.verb].answer
         if command.definition.effect is Effect.QUERY and answer is not None:
-            self._query = (given, answer, answers(command.definition))
+            self._query = (given, answer, command.definition.answer_type)
         return given
 
     def report(self, at: float, read: Read) -> Report:

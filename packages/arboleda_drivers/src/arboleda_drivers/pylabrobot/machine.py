@@ -29,7 +29,6 @@ from arboleda.drivers import (
 )
 from arboleda_drivers.connections.link import Close, Closed, CommandNotSent, CommandRequest, Open, Opened
 from arboleda_drivers.meaning import UnreadableValue
-from arboleda_drivers.plc.checks import answers
 
 from .messages import (
     BeginCalls,
@@ -337,7 +336,7 @@ class Machine:
         try:
             self._receipts |= {
                 "answered": command.id,
-                "answer": answer.value_of(event.result, answers(command.definition)),
+                "answer": answer.value_of(event.result, command.definition.answer_type),
             }
         except UnreadableValue as error:
             self._receipts |= {"failed": command.id, "failure": plain(str(error), LONGEST)}

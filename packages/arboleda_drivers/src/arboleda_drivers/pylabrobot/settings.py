@@ -183,7 +183,7 @@ def _verb(place: Place, verb: Verb, known: DeviceVerb) -> Iterator[Problem]:
     hint = "say what the last call's result means, answer: {words: {...}}"
     yield from checks.answer(place, known, hint, mapped=verb.answer is not None)
     if verb.answer is not None and known.effect is Effect.QUERY:
-        yield from _reading((*place, "answer"), verb.answer, checks.answers(known))
+        yield from _reading((*place, "answer"), verb.answer, known.answer_type)
 
 
 def _stops(settings: MachineMapping, device: Device) -> Iterator[Problem]:

@@ -51,7 +51,7 @@ def _verbs(keys: S7Keys, device: Device) -> Iterator[Problem]:
             yield from checks.argument((*place, "write", at), write, known[name], key="at", names=NAMES)
         yield from checks.shown_answer(place, verb.answer, known[name], ANSWER)
         if verb.answer is not None and known[name].effect is Effect.QUERY and not verb.answer.words:
-            of = checks.answers(known[name])
+            of = known[name].answer_type
             yield from _type((*place, "answer", "at"), verb.answer, of.type, of.allowed())
         if not verb.write:
             yield place, f"nothing is written for {name}, so the PLC cannot know what is asked"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from arboleda.drivers import Device, FactType, OnStop, Value, VerbCommand, Work
@@ -230,8 +230,3 @@ def _filter(topic: str, device: str) -> str:
     """The topic to subscribe to for one with names in it."""
     levels = topic.replace(f"{{{DEVICE}}}", device).split("/")
     return "/".join("+" if NAME.search(level) else level for level in levels)
-
-
-def all_topics(devices: Sequence[VirtualMapped]) -> Iterator[str]:
-    """The topics of all these devices, each once."""
-    yield from dict.fromkeys(topic for device in devices for topic in device.topics)
