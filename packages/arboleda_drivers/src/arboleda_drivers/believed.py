@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import islice
 
-from arboleda.drivers import DeviceVerb, Evidence, Facts
+from arboleda.drivers import Device, DeviceVerb, Evidence, Facts
+from arboleda_drivers.plc.checks import Problem
 
 LEVELS = {Evidence.IDS: "ids", Evidence.JOINTS: "facts", Evidence.STATE: "state"}
 """The words of a plant file for the evidence of a device."""
@@ -15,6 +16,14 @@ BELIEVED = {
     Evidence.STATE: "only that it works and stops is known; what it did is not checked",
 }
 EXAMPLES = 4  # of a verb, that are shown
+
+
+def unproven(device: Device, proves: Evidence) -> Iterator[Problem]:
+    """A problem of a device of which the plant file says more than its mapping proves."""
+    order = [*LEVELS]
+    if order.index(device.evidence) < order.index(proves):
+        said, proven = LEVELS[device.evidence], LEVELS[proves]
+        yield (), f"{device.name} has evidence: {said}, and this mapping proves {proven}"
 
 
 def headline(device: str, level: Evidence, believed: str = "") -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from arboleda.drivers import Device, DeviceVerb, Effect, Evidence, OnStop, Robot, Value, among
-from arboleda_drivers.believed import LEVELS, examples, headline
+from arboleda_drivers.believed import examples, headline, unproven
 from arboleda_drivers.meaning import as_text, in_words
 from arboleda_drivers.plc import checks
 from arboleda_drivers.plc.checks import Place, Problem
@@ -58,12 +58,7 @@ def problems(settings: Keys, device: Robot) -> Iterator[Problem]:
             yield from _verb(settings, device.kind.verbs[name])
     yield from _ways(settings, device)
     yield from unheard_of.problems(settings, device)
-    if device.evidence not in _levels(settings, device):
-        level = evidence(settings, device)
-        yield (
-            (),
-            f"{device.name} has evidence: {device.evidence.value}, and this mapping proves {LEVELS[level]}",
-        )
+    yield from unproven(device, evidence(settings, device))
 
 
 def _unheard(settings: Keys, device: Device) -> Iterator[Problem]:
@@ -76,12 +71,6 @@ def _unheard(settings: Keys, device: Device) -> Iterator[Problem]:
         if silent and verb.effect in WORKS:
             why = f"{verb.name} is a {verb.effect.value}, and nothing would say that it has ended"
             yield ("unheard",), f"{why}; only a switch may set {silent[0]}"
-
-
-def _levels(settings: Keys, device: Device) -> tuple[Evidence, ...]:
-    """The levels that may be said: the one that the mapping gives, and those below."""
-    order = (Evidence.IDS, Evidence.JOINTS, Evidence.STATE)
-    return order[order.index(evidence(settings, device)) :]
 
 
 def _verb(settings: Keys, verb: DeviceVerb) -> Iterator[Problem]:

@@ -8,7 +8,7 @@ from importlib.util import find_spec
 from itertools import islice
 
 from arboleda.drivers import Device, DeviceVerb, DriverError, Effect, Evidence, OnStop, Robot, Value, among
-from arboleda_drivers.believed import LEVELS, examples, headline
+from arboleda_drivers.believed import examples, headline, unproven
 from arboleda_drivers.plc import checks
 from arboleda_drivers.plc.checks import Place, Problem
 
@@ -33,9 +33,7 @@ class Settings(Keys):
         if not isinstance(device, Device):
             yield from checks.undeclared(device)
             return
-        level, proven = LEVELS[device.evidence], LEVELS[self.evidence_of(device)]
-        if level == "ids" != proven:
-            yield (), f"{device.name} has evidence: {level}, and this mapping proves {proven}"
+        yield from unproven(device, self.evidence_of(device))
         yield from checks.facts(self.facts, device, "say where it is heard, {topic: ..., field: ...}")
         yield from checks.verbs(self.verbs, device, "say what is sent for it, {action: ..., type: ...}")
         for place, source in self.sources:
