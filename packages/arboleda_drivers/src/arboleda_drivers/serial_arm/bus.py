@@ -1,10 +1,14 @@
-"""Bus of an arm's servos: one question at a time, and rounds in which all are asked."""
+"""Bus of an arm's servos: one question at a time, and rounds in which all are asked.
+
+Answers have no numbers: one that comes late could be taken for the next one of its servo. So each of `MARKS`
+rounds asks for another number of registers: the length of an answer says of which round it is.
+"""
 
 from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from arboleda_drivers.connections.link import LinkBroken
@@ -15,6 +19,7 @@ from .servos import MAKERS, Reading, read
 from .settings import Settings
 
 SILENT_S = 0.4  # a servo answers in milliseconds
+MARKS = 8  # rounds with a length of their own; the longest begins at registers that all servos have
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,19 +29,24 @@ class Question:
     id: int
     at: float
     length: int  # bytes of the answer
+    mark: int = 0  # how many of them are more than what is looked at
 
 
 class Bus:
     """Bus over one connection. First all servos are asked for their modes, then for their state.
 
-    `writes` are packets that wait for the bus; `latest` are the last readings, however old.
+    `writes` are packets that wait for the bus; `latest` are the last readings, however old. `marks` go on
+    from one connection to the next, as answers may.
     """
 
-    def __init__(self, out: list[Any], settings: Settings, names: Mapping[int, str], now: float) -> None:
+    def __init__(
+        self, out: list[Any], settings: Settings, names: Mapping[int, str], now: float, marks: Iterator[int]
+    ) -> None:
         self.writes: deque[bytes] = deque()
         self.latest: dict[int, Reading] = {}
         self.last_round_at = self._round_began_at = now
-        self._out, self._settings, self._names = out, settings, names
+        self._out, self._settings, self._names, self._marks = out, settings, names, marks
+        self._mark = next(marks)
         self._maker = MAKERS[settings.protocol]
         self._packets = PacketReader(self._maker.framing, replies=True)
         self._waiting: deque[int] = deque()  # servos that are still to be asked in this round
@@ -69,12 +79,14 @@ class Bus:
                 return
 
     def _ask(self, now: float, id: int) -> None:
+        mark = 0 if self._modes is not None else self._mark
         address, length = (self._maker.mode[0], 1) if self._modes is not None else self._maker.block
-        self._question = Question(id=id, at=now, length=length)
-        self._out.append(Write(data=read(self._maker, id, address, length)))
+        self._question = Question(id=id, at=now, length=length + mark, mark=mark)
+        self._out.append(Write(data=read(self._maker, id, address - mark, length + mark)))
 
     def _end_round(self, now: float) -> Mapping[int, Reading]:
         self._waiting.extend(self._names)
+        self._mark = next(self._marks)
         self._round_at = now + self._settings.poll_s
         self.last_round_at, self._round_began_at = self._round_began_at, now
         readings, self._readings = self._readings, {}
@@ -93,7 +105,8 @@ class Bus:
             return  # the echo of a question, or an answer that came too late
         self._question, self._answered_at[packet.id] = None, now
         if self._modes is None:
-            self._readings[packet.id] = self.latest[packet.id] = self._maker.reading(now, packet)
+            state = replace(packet, data=packet.data[question.mark :])
+            self._readings[packet.id] = self.latest[packet.id] = self._maker.reading(question.at, state)
         elif packet.data[0] in self._maker.mode[1]:
             self._modes.add(packet.id)
         else:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from itertools import cycle
 
 from arboleda.drivers import HEALTH, WELL, Facts, Home, Jointed, MotionState, MoveJoints, Report, Robot
 from arboleda_drivers.connections.controller import Controller
@@ -16,7 +17,7 @@ from arboleda_drivers.connections.link import LinkBroken
 from arboleda_drivers.connections.receipts import Look
 from arboleda_drivers.connections.stream import Received, Write
 
-from .bus import Bus
+from .bus import MARKS, Bus
 from .gripper import Gripper
 from .joint_goals import JointGoals
 from .servos import MAKERS, TICKS, Reading
@@ -48,11 +49,12 @@ class ServoController(Controller):
         self._near = dict(zip(self._joints, map(_ticks, self.robot.motion.tolerances), strict=True))
         names = [joint.name for joint in self.robot.joints]
         self._names = dict(zip((servo.id for servo in settings.servos), [*names, GRIPPER], strict=False))
+        self._marks = cycle(range(MARKS))
         self._boot = 1
         self._marked: set[int] = set()
 
     def forget(self, now: float) -> None:
-        self.bus = Bus(self.out, self._settings, self._names, now)
+        self.bus = Bus(self.out, self._settings, self._names, now, self._marks)
         self.goals = JointGoals(self.robot, self._settings, self.bus)
         self.effector: Gripper = Gripper(self._settings, self.bus, self.receipts)
         self._picture: Picture | None = None
@@ -93,7 +95,7 @@ class ServoController(Controller):
                 self._look(now, readings)
             boots = isinstance(self._work, Readying) and self._maker.reboots
             if why := self.bus.silence(now, BOOT_S if boots else 0.0):
-                if isinstance(self._work, Move) and (held := self.goals.held(self._work.goals)):
+                if isinstance(self._work, Move) and (held := self.goals.held(now, self._work.goals)):
                     self.out.append(Write(data=self._maker.goals(held)))
                 raise LinkBroken(why)
 
@@ -123,7 +125,7 @@ class ServoController(Controller):
 
     def _halt(self, now: float) -> None:
         """Have each joint hold where it is."""
-        self._hold = self.goals.hold(self._work.goals if isinstance(self._work, Move) else {})
+        self._hold = self.goals.hold(now, self._work.goals if isinstance(self._work, Move) else {})
         self._work, self._stopping_at, self._strays = None, now, False
         self.receipts.news = True
 

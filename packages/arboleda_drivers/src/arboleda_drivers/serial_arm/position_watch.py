@@ -14,15 +14,16 @@ STUCK_S = 0.3  # which is told within 0.5 s, rounds of questions included
 
 @dataclass(frozen=True, kw_only=True)
 class Plan:
-    """Move as servos were told it: goals in ticks, speeds in ticks/s, and when they go so fast, s."""
+    """Move as servos were told it: goals in ticks, speeds in ticks/s, reached at `begins_at`; times in s."""
 
+    told_at: float
     goals: Mapping[int, int]
     speeds: Mapping[int, float]
     begins_at: float
     ends_at: float
 
 
-NOTHING = Plan(goals={}, speeds={}, begins_at=0.0, ends_at=0.0)
+NOTHING = Plan(told_at=0.0, goals={}, speeds={}, begins_at=0.0, ends_at=0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,6 +80,14 @@ class PositionWatch:
     def is_old(self, id: int) -> bool:
         """True where a servo repeats its position, and should have gone on meanwhile."""
         return id in self.unknown or self._missed(id) >= OLD_TICKS
+
+    def gone(self, id: int, since: float, now: float, *, at_most_s: float) -> float:
+        """The ticks that a servo may have gone between two times, if it knows no ramp; in no known move
+        `at_most_s` a second.
+        """
+        if self._plan is NOTHING:
+            return at_most_s * (now - since)
+        return self._plan.speeds.get(id, 0.0) * max(0.0, now - max(since, self._plan.told_at))
 
     def stuck(self) -> list[int]:
         """The servos whose position has not changed for too long."""

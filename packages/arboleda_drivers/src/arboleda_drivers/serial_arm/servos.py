@@ -23,7 +23,8 @@ DYNAMIXEL_ALARMS = {1: "voltage", 4: "overheating", 8: "sensor", 16: "electrical
 class Reading:
     """Registers of one servo at one time; positions in ticks, speeds in ticks/s.
 
-    `marked`: its acceleration is set, which a servo forgets without power.
+    `at` is the time (s) at which the servo was asked: it read them then or later. `marked`: its acceleration
+    is set, which a servo forgets without power.
     """
 
     at: float

@@ -9,6 +9,7 @@ import pytest
 from arboleda.model.commands import StopMode
 from arboleda.model.messages import MotionState, Report
 from arboleda_drivers.serial_arm.settings import ServoJoint
+from arboleda_lines.line import Form
 
 from .serial_arm_rig import SETTINGS, STILL, ServoRig
 
@@ -251,6 +252,40 @@ def test_a_stop_is_held_at_the_speed_of_the_move(maker: str) -> None:
     rig.stop()
     rig.wait(0.1)
     assert first.get(first.layout.speed) == told
+
+
+@MAKERS
+@pytest.mark.parametrize(("slow_s", "after_s"), [(0.1, 0.6), (0.15, 0.9), (0.18, 0.5)])
+def test_a_stop_throws_no_joint_back_to_a_position_that_a_slow_line_told_long_ago(
+    maker: str, slow_s: float, after_s: float
+) -> None:
+    rig = ServoRig(maker, reply_s=0.2)
+    rig.move(0, 0, 80, 0, 0)
+    rig.wait(0.3)
+    rig.line.line.begin(Form(word="slow", delay_s=slow_s))
+    rig.wait(after_s)
+    elbow = rig.servos.servos[3]
+    there, way = elbow.at, math.copysign(1, elbow.goal - elbow.start)
+    rig.stop()
+    for _ in range(10):
+        rig.wait(0.1)
+        assert way * (elbow.at - there) > -40
+    rig.line.line.end()
+    rig.until(state=STILL)
+    assert elbow.goal == pytest.approx(elbow.at, abs=1)
+
+
+@MAKERS
+def test_an_answer_is_of_no_other_round_by_its_length(maker: str) -> None:
+    rig = ServoRig(maker)
+    rig.wait(0.2)
+    written = len(rig.line.written)
+    rig.wait(1.0)
+    place = {"feetech": 2, "dynamixel": 4}[maker]
+    of_first = [packet for packet in rig.line.written[written:] if packet[place] == 1]
+    assert len(of_first) > 12
+    assert all(len({*of_first[each : each + 8]}) == 8 for each in range(len(of_first) - 8))
+    assert rig.report.state is STILL
 
 
 def test_a_servo_that_is_silent_as_a_stop_comes_holds_once_it_is_heard() -> None:
