@@ -245,7 +245,7 @@ def _submit(api: APIRouter, side: PlantApi) -> None:
     async def add_task(request: Request) -> JSONResponse:
         """Queue a task, written or as a form; 422 where it is refused, 503 where the queue is full."""
         require(request.scope["arboleda.role"], SUBMIT)
-        form = task_in(await request.body(), side.offers())
+        form = task_in(await request.body(), side.offers)
         text = form.text if isinstance(form, TaskText) else side.spelled(**form.named())
         is_ours = request.headers.get("user-agent", "").startswith(COMMAND_LINE)
         why = form.why if isinstance(form, TaskText) else ""
@@ -318,15 +318,15 @@ def verb_arguments(body: bytes) -> AnyVerbArguments:
         ) from None
 
 
-def task_in(body: bytes, offers: Sequence[dict[str, Any]] = ()) -> TaskText | TaskForm:
+def task_in(body: bytes, offers: Callable[[], Sequence[dict[str, Any]]] = tuple) -> TaskText | TaskForm:
     """The task in a body, `{"text": "..."}` or cell, recipe and values; PayloadError for anything else.
 
-    Its example is the first of `offers`.
+    Its example is the first of `offers`, which takes long to make where there are many recipes.
     """
     for form in (TaskText, TaskForm):
         with suppress(ValidationError):
             return form.model_validate_json(body)
-    text, named, cells = next(map(_example, (each for each in offers if each["recipes"])), EXAMPLE)
+    text, named, cells = next(map(_example, (each for each in offers() if each["recipes"])), EXAMPLE)
     raise PayloadError(
         f'The body must be JSON like {{"text": "{text}"}} or {named}, for several cells '
         f'{{"any_of": {cells}, "values": {{...}}}}, and nothing else.'
