@@ -8,6 +8,8 @@ from typing import Any
 
 from arboleda_drivers.connections.receipts import Receipts
 
+from .events import GoalAnswer
+from .goal import Goal
 from .presence import End
 
 ANSWER_S = 2.0  # a server answers a goal or a cancel in milliseconds
@@ -91,6 +93,22 @@ class Asks:
             self._asked_at.pop(key, None)
             self._answered_at[key] = now
         self._settle()
+
+    def hear_goal(self, now: float, end: End, goal: Goal | None, said: GoalAnswer) -> bool:
+        """Take an answer of the server where that goal is open; True where it has refused it."""
+        if goal is None or said.id != goal.key:
+            if said.accepted:  # nobody waits for it any more
+                self.begin(now, end)
+            return False
+        if not said.accepted:
+            self._receipts.reject("" if goal.stopped else goal.id, "goal_refused")
+            return True
+        goal.accepted = True
+        if goal.stopped:  # a cancel that came before it cannot have included it
+            self.begin(now, end)
+        else:
+            self._receipts.tell(accepted=goal.id)
+        return False
 
     def leave(self, ends: Iterable[End]) -> None:
         """Tell no end any more; what runs at these ends is cancelled as soon as they are there."""

@@ -230,19 +230,9 @@ class Machine:
     # Answers of the server.
 
     def _hear_answer(self, now: float, answer: GoalAnswer) -> None:
-        goal = self._goal
         self._history.answer(answer.id, accepted=answer.accepted)
-        if goal is None or answer.id != goal.key:
-            if answer.accepted:  # nobody waits for it any more
-                self._cancel(now)
-        elif not answer.accepted:
-            self._end(**({} if goal.stopped else {"rejected": goal.id, "refusal": "goal_refused"}))
-        else:
-            goal.accepted = True
-            if goal.stopped:  # a cancel that came before it cannot have included it
-                self._cancel(now)
-            else:
-                self._receipts.tell(accepted=goal.id)
+        if self._asks.hear_goal(now, self._end_of, self._goal, answer):
+            self._end()
 
     def _hear_end(self, now: float, end: GoalResult) -> None:
         goal = self._goal

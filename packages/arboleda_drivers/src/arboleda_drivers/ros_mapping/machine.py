@@ -251,7 +251,8 @@ class Machine:
         each, history = self._jobs.get(end), self._histories[end]
         if isinstance(said, GoalAnswer):
             history.answer(said.id, accepted=said.accepted)
-            self._hear_goal(now, end, said)
+            if self._asks.hear_goal(now, end, each, said):
+                self._end(end)
         elif isinstance(said, GoalList):
             history.list(said.goals)
             running = [goal.uuid for goal in said.goals if goal.status is None]
@@ -265,20 +266,6 @@ class Machine:
             self._asks.answer(now, end, "cancel_refused" if is_refused else "")
         elif each is not None and said.id == each.key and not each.is_over:
             self._hear_result(now, end, each, said)
-
-    def _hear_goal(self, now: float, end: End, answer: GoalAnswer) -> None:
-        each = self._jobs.get(end)
-        if each is None or answer.id != each.key:
-            if answer.accepted:  # nobody waits for it any more
-                self._asks.begin(now, end)
-        elif not answer.accepted:
-            self._end(end, **({} if each.stopped else {"rejected": each.id, "refusal": "goal_refused"}))
-        else:
-            each.accepted = True
-            if each.stopped:  # a cancel that came before it cannot have included it
-                self._asks.begin(now, end)
-            else:
-                self._receipts.tell(accepted=each.id)
 
     def _hear_result(self, now: float, end: End, each: Job, result: GoalResult) -> None:
         if each.stopped:

@@ -10,6 +10,7 @@ import pytest
 from tests.contract.conftest import Mosquitto
 from tests.packages import ROOT
 
+from arboleda.drivers import DriverError
 from arboleda.plant_file.loader import load
 from arboleda_drivers.mqtt_mapping.virtual.server import Server
 
@@ -34,6 +35,8 @@ def test_an_answer_that_names_the_order_ends_it(
     (tmp_path / "recipes.py").write_text((EXAMPLE / "recipes.py").read_text("utf-8"), "utf-8")
     model = load(plant)
     assert model.robots["lamp"].evidence.value == "ids"
+    with pytest.raises(DriverError, match="and a device speaks MQTT 5"):
+        Server([*model.robots.values()], ())
     played = Server([*model.robots.values()], (), is_there=True)
     played.start()
     try:

@@ -88,6 +88,11 @@ class Server:
         if len(brokers) != 1:
             names = ", ".join(sorted(brokers)) or "none"
             raise DriverError(f"the devices with driver: {{mqtt: ...}} need one broker; there are {names}")
+        if not is_there and any(settings.version == "5" for _, settings in found):
+            raise DriverError(
+                "the broker that this starts speaks MQTT 3.1.1, and a device speaks MQTT 5; start another one"
+                " there, as mosquitto, and say --broker-is-there"
+            )
         (self._broker,) = brokers
         at = address(self._broker)
         self._own = None if is_there else EmbeddedBroker(at.host, at.port)
