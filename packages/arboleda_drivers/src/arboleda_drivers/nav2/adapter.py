@@ -12,6 +12,7 @@ from arboleda_drivers.nav2.machine import Route, to_pose, waypoints
 from arboleda_drivers.nav2.pose import Pose
 from arboleda_drivers.nav2.settings import ToPose, Waypoints
 from arboleda_drivers.ros_action.action_client import ActionClientDriver, stamp_of
+from arboleda_drivers.ros_action.interfaces import hear_all
 from arboleda_drivers.ros_action.machine import Machine
 
 
@@ -24,14 +25,11 @@ class _Nav2(ActionClientDriver):
         from geometry_msgs.msg import PoseWithCovarianceStamped
         from nav_msgs.msg import Odometry
 
-        from arboleda_ros.qos import SENSOR, VIEW
+        from arboleda_ros.qos import SENSOR
 
         node.create_subscription(Odometry, self.settings.odometry, self._count, SENSOR)
         if self.settings.localisation:
-            # Only the one hears what amcl said before, and only the other one those who keep nothing.
-            for delivery in (VIEW, SENSOR):
-                topic = self.settings.localisation
-                node.create_subscription(PoseWithCovarianceStamped, topic, self._localise, delivery)
+            hear_all(node, PoseWithCovarianceStamped, self.settings.localisation, self._localise)
 
     def _count(self, message: Any) -> None:
         self.see(OdometryPose(stamp=stamp_of(message), pose=pose_of(message.pose.pose)))

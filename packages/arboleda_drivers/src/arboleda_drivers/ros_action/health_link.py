@@ -8,7 +8,7 @@ from operator import attrgetter
 from typing import Any
 
 from arboleda_drivers.ros_action.health import Call, CallAnswer, Health, HealthReading
-from arboleda_drivers.ros_action.interfaces import interface
+from arboleda_drivers.ros_action.interfaces import hear_all, interface
 
 SUCCEEDED = 4  # action_msgs/msg/GoalStatus
 Take = Callable[[Any, HealthReading | CallAnswer], None]
@@ -19,13 +19,8 @@ class HealthLink:
 
     def __init__(self, node: Any, health: Health, take: Take) -> None:
         """Subscribe, and make the clients of all calls; raises DriverError if a type is missing."""
-        from arboleda_ros.qos import SENSOR, VIEW
-
         self._take, self._field = take, attrgetter(health.field)
-        message = interface(health.type)
-        # One hears publishers of any quality of service, the other the last value of those that keep it.
-        for profile in (SENSOR, VIEW):
-            node.create_subscription(message, health.topic, self._read, profile)
+        hear_all(node, interface(health.type), health.topic, self._read)
         self._clients = {call.name: _client(node, call) for call in health.clear}
 
     def make(self, call: Call) -> None:

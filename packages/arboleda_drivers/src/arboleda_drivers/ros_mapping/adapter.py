@@ -10,7 +10,7 @@ from typing import Any
 from arboleda.drivers import Command, DriverError, NotSent, Robot, VerbCommand, driver
 from arboleda_drivers.ros_action.action_link import ActionLink
 from arboleda_drivers.ros_action.events import Said
-from arboleda_drivers.ros_action.interfaces import interface
+from arboleda_drivers.ros_action.interfaces import hear_all, interface
 from arboleda_drivers.ros_action.presence import End
 from arboleda_drivers.ros_action.ros_driver import RosDriver
 from arboleda_drivers.ros_mapping.events import (
@@ -62,7 +62,7 @@ class RosMapping(RosDriver):
             self._make(self.settings.end(call), call)
         for type, names in self._topics().items():
             for name in names:
-                self._subscribe(interface(type), name)
+                hear_all(node, interface(type), name, partial(self._told, End("topic", name)))
 
     def _topics(self) -> dict[str, set[str]]:
         """The names of the topics that are heard, by their type."""
@@ -84,13 +84,6 @@ class RosMapping(RosDriver):
             self._clients[end] = self.node.create_client(type, end.name)
         else:
             self._clients[end] = self.node.create_publisher(type, end.name, _profile(call.qos))
-
-    def _subscribe(self, type: Any, name: str) -> None:
-        from arboleda_ros.qos import SENSOR, VIEW
-
-        # One hears publishers of any quality of service, the other the last value of those that keep it.
-        for profile in (SENSOR, VIEW):
-            self.node.create_subscription(type, name, partial(self._told, End("topic", name)), profile)
 
     def do(self, message: CancelGoals | Send) -> None:
         if isinstance(message, CancelGoals):
