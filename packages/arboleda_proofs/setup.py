@@ -24,6 +24,10 @@ setup(
         ("share/arboleda_proofs", ["package.xml"]),
     ],
     install_requires=["arboleda==0.1.0"],
+    extras_require={
+        # Runs on the workers of other hosts (`--on`) need it.
+        "cluster": ["distributed>=2026.8"],
+    },
     entry_points={
         "arboleda.client": ["proofs = arboleda_proofs.client:ProofsRoutes"],
         "arboleda.commands": ["proofs = arboleda_proofs.commands:COMMANDS"],

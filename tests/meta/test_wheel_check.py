@@ -23,7 +23,8 @@ def test_the_parts_are_those_that_who_runs_a_plant_installs() -> None:
 
 def test_what_a_part_of_a_package_needs_is_asked_for_and_not_the_package() -> None:
     behind = CHECK.libraries((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    assert {"groot2", "mcp", "modbus", "opcua", "postgres", "pylabrobot", "s7", "serial"} == set(behind)
+    of_drivers = {"modbus", "opcua", "pylabrobot", "s7", "serial"}
+    assert {"cluster", "groot2", "mcp", "postgres", *of_drivers} == set(behind)
     assert [each for each in behind["modbus"] if each.startswith("pymodbus")]
     assert not [each for needed in behind.values() for each in needed if each.startswith("arboleda")]
 

@@ -21,12 +21,12 @@ from arboleda.cli.complaint import complain, status_of
 from arboleda.extension import ArboledaError, ConfigError
 from arboleda.plant_file.user_file import check_new, check_writable
 from arboleda_proofs.campaigns import screen, single_seed
+from arboleda_proofs.campaigns.crews import crew
 from arboleda_proofs.campaigns.flight import SUFFIX
 from arboleda_proofs.campaigns.options import CYCLES, LEVEL, SEED, SEEDS
 from arboleda_proofs.campaigns.plants import Plant, PlantRotation, Plants
 from arboleda_proofs.campaigns.request import Request
 from arboleda_proofs.campaigns.seed_campaign import SeedCampaign
-from arboleda_proofs.campaigns.workers import processors
 from arboleda_proofs.simulator.levels import LEVELS
 from frame.words import parser
 
@@ -64,7 +64,8 @@ def _run(options: Namespace, console: Console) -> int:
 
 def _many_seeds(options: Namespace, request: Request, console: Console) -> Ended:
     campaign = SeedCampaign(request, console, options.json)
-    status = campaign.run(options.jobs or processors())
+    with crew(options.jobs, options.on, console) as those:
+        status = campaign.run(those)
     return status, campaign.shrunk.plant if campaign.shrunk else None
 
 
@@ -123,6 +124,7 @@ def _options(typed: Sequence[str] | None) -> Namespace:
     keeping = "write a plant there: of the one seed, or of the broken one that is shrunk"
     options.add_argument("--keep-plant", type=Path, metavar="DIR", help=keeping)
     options.add_argument("--jobs", type=_count, metavar="N", help="processes [one per processor]")
+    options.add_argument("--on", metavar="ADDRESS", help="the workers of a scheduler do it: tcp://HOST:8786")
     return options.parse_args(typed)
 
 

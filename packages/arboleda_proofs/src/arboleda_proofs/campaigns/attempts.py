@@ -1,4 +1,4 @@
-"""Attempts to break the same with fewer faults: a campaign of them, on all processors."""
+"""Attempts to break the same with fewer faults: a campaign of them."""
 
 from __future__ import annotations
 
@@ -10,10 +10,9 @@ from arboleda_proofs.simulator.faults import Fault
 from arboleda_proofs.simulator.run import MINUTE_S, Result
 from arboleda_proofs.simulator.shrink import breaks_alike, explicit
 
-from .campaign import Campaign, Passed, Tick
+from .campaign import Batch, Crew, Passed, Tick
 from .plants import Plant
 from .setting import Setting
-from .workers import Workers
 
 GRACE_S = 20.0  # of plant time: with fewer faults it may break later by so much
 
@@ -48,22 +47,17 @@ class Attempts:
         )
         return Attempt(number=seed, result=result, broken=breaks_alike(result, self.best))
 
-    def in_turn(self, tick: Tick, jobs: int) -> Iterator[Result]:
+    def in_turn(self, tick: Tick, crew: Crew) -> Iterator[Result]:
         """Their results in the order of the lists; none begins after one has broken."""
         ended: dict[int, Result] = {}
-        following = 0
-        with self._campaign(tick, min(jobs, len(self.lists))) as campaign:
+        following, numbers = 0, range(len(self.lists))
+        batch = Batch(runs=self, seeds=numbers, tick=tick, plants=(self.plant,), until_failure=True, ahead=1)
+        with crew.campaign(batch) as campaign:
             for attempt in campaign.results():
                 ended[attempt.number] = attempt.result
                 while following in ended:
                     yield ended.pop(following)
                     following += 1
-
-    def _campaign(self, tick: Tick, jobs: int) -> Campaign[Attempt]:
-        numbers = range(len(self.lists))
-        if jobs == 1:
-            return Campaign(self, numbers, until_failure=True, tick=tick)
-        return Workers(self, numbers, until_failure=True, tick=tick, jobs=jobs, ahead=1)
 
 
 def until_s(best: Result) -> float:

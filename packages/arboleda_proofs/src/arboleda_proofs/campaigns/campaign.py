@@ -1,10 +1,14 @@
-"""Campaign of many seeds, one after the other in this process; `workers.py` has one for several processes."""
+"""Campaign of many seeds, one after the other in this process; `workers.py` has one for several processes,
+`cluster.py` one for several hosts."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from types import TracebackType
 from typing import Generic, NamedTuple, Protocol, TypeVar
+
+from .plants import Plant
 
 Tick = Callable[[], None]
 
@@ -15,6 +19,10 @@ class SoFar(NamedTuple):
     minutes: int = 0
     cycles: int = 0
     faults: int = 0
+
+    def and_(self, minutes: int, cycles: int, faults: int) -> SoFar:
+        """This amount with so much more."""
+        return SoFar(self.minutes + minutes, self.cycles + cycles, self.faults + faults)
 
 
 class Passed(Protocol):
@@ -40,19 +48,30 @@ class Runs(Protocol[Made]):
     def run(self, seed: int, *, tick: Passed | None = None) -> Made: ...
 
 
-class Campaign(Generic[R]):
-    """Campaign: runs `seeds` in turn, to the first broken one with `until_failure`.
+@dataclass(frozen=True, kw_only=True)
+class Batch(Generic[R]):
+    """Batch of runs, of `seeds` in turn, to the first broken one with `until_failure`.
 
-    `so_far` is how much was simulated; `tick` is called now and then meanwhile.
+    `plants` are those of the runs that are read from files. `tick` is called now and then meanwhile. `ahead`:
+    so much is handed out to each worker, of which it has begun one.
     """
 
-    def __init__(
-        self, setting: Runs[R], seeds: Iterable[int], *, until_failure: bool = False, tick: Tick
-    ) -> None:
-        self.setting = setting
-        self.seeds = iter(seeds)
-        self.tick = tick
-        self._until_failure = until_failure
+    runs: Runs[R]
+    seeds: Iterable[int]
+    tick: Tick
+    plants: Sequence[Plant] = ()
+    until_failure: bool = False
+    ahead: int = 2
+
+
+class Campaign(Generic[R]):
+    """Campaign: does the runs of a batch; `so_far` is how much was simulated."""
+
+    def __init__(self, batch: Batch[R]) -> None:
+        self.setting = batch.runs
+        self.seeds = iter(batch.seeds)
+        self.tick = batch.tick
+        self._until_failure = batch.until_failure
         self._so_far = SoFar()
 
     def __enter__(self) -> Campaign[R]:
@@ -83,6 +102,16 @@ class Campaign(Generic[R]):
             yield self.setting.run(seed, tick=self._passed)
 
     def _passed(self, minutes: int = 1, cycles: int = 0, faults: int = 0, /) -> None:
-        before = self._so_far
-        self._so_far = SoFar(before.minutes + minutes, before.cycles + cycles, before.faults + faults)
+        self._so_far = self._so_far.and_(minutes, cycles, faults)
         self.tick()
+
+
+class Crew(Protocol):
+    """Crew: processes of this machine, or workers of others, that do the runs of campaigns."""
+
+    @property
+    def jobs(self) -> int:
+        """The number of runs that they do at a time."""
+
+    def campaign(self, batch: Batch[R]) -> Campaign[R]:
+        """The campaign that does this batch."""

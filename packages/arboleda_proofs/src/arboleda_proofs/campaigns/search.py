@@ -13,7 +13,7 @@ from arboleda_proofs.simulator.run import MINUTE_S, Result
 from arboleda_proofs.simulator.shrink import Progress, breaks_alike, explicit, shrink
 
 from .attempts import Attempts, until_s
-from .campaign import Tick
+from .campaign import Crew, Tick
 from .plants import Plant
 from .setting import Setting
 
@@ -33,13 +33,13 @@ class ShrunkBreach:
 
 
 def shrunk(
-    setting: Setting, broken: Result, progress: Progress, *, tick: Tick = lambda: None, jobs: int = 1
+    setting: Setting, broken: Result, progress: Progress, *, tick: Tick = lambda: None, crew: Crew
 ) -> ShrunkBreach:
     """The same breach with as few faults, and as little of its plant, as could be found, or until Ctrl-C.
 
     `progress` is called after every run, `tick` now and then.
     """
-    search = _Search(setting, broken, progress, tick, jobs)
+    search = _Search(setting, broken, progress, tick, crew)
     complete = False
     try:
         search.fewer_faults()
@@ -58,13 +58,13 @@ def shrunk(
 class _Search:
     """`best` is the smallest run found that breaks the same, on `plant`."""
 
-    def __init__(self, setting: Setting, broken: Result, progress: Progress, tick: Tick, jobs: int) -> None:
+    def __init__(self, setting: Setting, broken: Result, progress: Progress, tick: Tick, crew: Crew) -> None:
         self.best = broken
         self.plant = setting.plants.of(broken.seed)
         self._setting = setting
         self._progress = progress
         self._tick = tick
-        self._jobs = jobs
+        self._crew = crew
         self._runs = 0
 
     def fewer_faults(self) -> None:
@@ -87,7 +87,7 @@ class _Search:
 
     def _on_this_plant(self, best: Result, lists: Sequence[Sequence[Fault]]) -> Iterator[Result]:
         attempts = Attempts(setting=self._setting, plant=self.plant, best=best, lists=lists)
-        return attempts.in_turn(self._tick, self._jobs)
+        return attempts.in_turn(self._tick, self._crew)
 
     def _better(self, runs: int, best: Result) -> None:
         self.best = best

@@ -13,14 +13,13 @@ from arboleda.model.counting import counted
 from arboleda_proofs.simulator.run import Result
 
 from . import breach_text, report, summary
-from .campaign import Campaign, SoFar, Tick
+from .campaign import Batch, Campaign, Crew, SoFar, Tick
 from .request import Request
 from .screen import FIRST_S, progress
 from .search import ShrunkBreach, shrunk
 from .setting import rules
 from .tally import Tally
 from .words import short
-from .workers import Workers
 
 HELD, BROKEN, INTERRUPTED = 0, 1, 130  # exit statuses
 
@@ -46,14 +45,14 @@ class SeedCampaign:
         self.shrunk: ShrunkBreach | None = None
         self._tick: Tick = lambda: None
 
-    def run(self, jobs: int) -> int:
+    def run(self, crew: Crew) -> int:
         """Run all seeds and return the exit status. Ctrl-C ends the campaign with the seeds done so far, or
         with the fewest faults so far that break one.
         """
         status = INTERRUPTED
         try:
-            self._simulate(jobs)
-            self._shrink(jobs)
+            self._simulate(crew)
+            self._shrink(crew)
             status = HELD if self._tally.holds else BROKEN
         except KeyboardInterrupt:
             self._say("interrupted; so far:", "yellow")
@@ -63,11 +62,11 @@ class SeedCampaign:
             summary.write(self._file, self._request, self._tally, self.shrunk, complete=complete)
         return status
 
-    def _simulate(self, jobs: int) -> None:
+    def _simulate(self, crew: Crew) -> None:
         tally, count = self._tally, self._request.count
         try:
             with (
-                self._campaign(jobs) as campaign,
+                self._campaign(crew) as campaign,
                 progress(self._console, "simulating", count, first_s=FIRST_S, clock=self._clock) as show,
             ):
                 self._tick = lambda: show(self._so_far(campaign.so_far), len(tally.rows))
@@ -79,13 +78,16 @@ class SeedCampaign:
         finally:
             self._elapsed_s = self._since()
 
-    def _campaign(self, jobs: int) -> Campaign[Result]:
+    def _campaign(self, crew: Crew) -> Campaign[Result]:
         request = self._request
-        jobs = jobs if request.count is None else min(jobs, request.count)
-        tick, until_failure = lambda: self._tick(), request.until_failure
-        if jobs == 1:
-            return Campaign(request.setting, request.turn, until_failure=until_failure, tick=tick)
-        return Workers(request.setting, request.turn, until_failure=until_failure, tick=tick, jobs=jobs)
+        batch = Batch(
+            runs=request.setting,
+            seeds=request.turn,
+            tick=lambda: self._tick(),
+            plants=request.listed,
+            until_failure=request.until_failure,
+        )
+        return crew.campaign(batch)
 
     def _so_far(self, passed: SoFar) -> str:
         tally, count = self._tally, self._request.count
@@ -102,7 +104,7 @@ class SeedCampaign:
         ]
         return ", ".join(parts)
 
-    def _shrink(self, jobs: int) -> None:
+    def _shrink(self, crew: Crew) -> None:
         lowest = self._tally.lowest
         if lowest is None:
             return
@@ -119,7 +121,7 @@ class SeedCampaign:
                 tick()
 
             tick()
-            self.shrunk = shrunk(self._request.setting, lowest, better, tick=tick, jobs=jobs)
+            self.shrunk = shrunk(self._request.setting, lowest, better, tick=tick, crew=crew)
         if not self.shrunk.complete:
             self._say("interrupted; the fewest faults so far:", "yellow")
 

@@ -8,17 +8,18 @@ import signal
 from collections.abc import Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
 from itertools import islice
 from multiprocessing import active_children, get_all_start_methods, get_context, parent_process
+from operator import length_hint
 from threading import Thread
 from types import TracebackType
 from typing import Any
 
 from arboleda.extension import ArboledaError
 
-from .campaign import Campaign, R, Runs, SoFar
+from .campaign import Batch, Campaign, R, Runs, SoFar
 
-AHEAD = 2  # seeds that are handed out to each worker
 TICK_S = 0.5
 YOUNG = 50_000  # objects before a collection
 
@@ -36,24 +37,35 @@ def collect_rarely() -> None:
     gc.set_threshold(YOUNG)
 
 
+@dataclass(frozen=True)
+class Processes:
+    """Crew of so many processes of this machine; one is this process."""
+
+    jobs: int
+
+    def campaign(self, batch: Batch[R]) -> Campaign[R]:
+        """The campaign of a batch, by no more processes than it has seeds."""
+        jobs = min(self.jobs, length_hint(batch.seeds, self.jobs))
+        return Campaign(batch) if jobs <= 1 else Workers(batch, jobs)
+
+
 class Workers(Campaign[R]):
     """Workers: `jobs` processes inside a `with` block, which end with it in any case.
 
-    Enter it before any thread is started, as it forks the workers if the system can. `ahead`: so many seeds
-    are handed out to each worker, of which it has begun one.
+    Enter it before any thread is started, as it forks the workers if the system can.
     """
 
-    def __init__(self, *arguments: Any, jobs: int, ahead: int = AHEAD, **options: Any) -> None:
-        super().__init__(*arguments, **options)
+    def __init__(self, batch: Batch[R], jobs: int) -> None:
+        super().__init__(batch)
         context = get_context("fork" if "fork" in get_all_start_methods() else "spawn")
         self._others = frozenset(active_children())
         self._passed_by = context.Array("Q", SoFar())  # of all workers
         self._pool = ProcessPoolExecutor(jobs, context, _Worker.prepare, (self.setting, self._passed_by))
         self._under_way: dict[Future[R], int] = {}
-        self._jobs, self._ahead = jobs, ahead
+        self._begins_with = jobs * batch.ahead
 
     def __enter__(self) -> Campaign[R]:
-        self._hand_out(self._jobs * self._ahead)
+        self._hand_out(self._begins_with)
         return self
 
     def __exit__(

@@ -17,6 +17,8 @@ from arboleda.host.packages import extra
 from arboleda.model.packages import MAKE
 from arboleda.plant_file.user_file import check_writable
 
+from .options import On
+
 BUDGET = "10m"
 HELP = f"""Try every single fault at every kind of moment of every recipe, and judge each run.
 
@@ -25,6 +27,7 @@ arboleda prove                          the plant of this folder, for {BUDGET}
 arboleda prove --plant my_plant.yaml    your plant; what is kept is not run again
 arboleda prove --recipe weigh --budget all
 arboleda prove --faults unlike.yaml     and what real devices did: arboleda record unlike --to unlike.yaml
+arboleda prove --budget all --on tcp://laptop:8786  on as many hosts as there are
 arboleda prove --html out.html --tests test_found.py
 
 Each recipe runs once without faults, for each class of parameters and each answer that can lead elsewhere.
@@ -107,6 +110,7 @@ Jobs = Annotated[
 PAIRS_TAKE = Phrase(
     "cli.prove.pairs_take", "--pairs: all pairs take years; give a --budget that is a time, not {all}"
 )
+ON_OR_JOBS = Phrase("cli.prove.on_or_jobs", "--on has workers of other hosts do the runs: leave out --jobs")
 NO_BUDGET = Phrase("cli.prove.no_budget", "--budget: {budget} is no time; write 30s, 10m, 2h or {all}")
 
 
@@ -131,13 +135,14 @@ def prove(
     mend: Mend = False,
     anew: Anew = False,
     jobs: Jobs = None,
+    on: On = None,
     state: StateFolder = None,
 ) -> None:
     from arboleda_proofs.campaigns import screen  # the simulator takes a while to load
+    from arboleda_proofs.campaigns.crews import crew
     from arboleda_proofs.campaigns.proof.proof_campaign import ProofCampaign
     from arboleda_proofs.campaigns.proof.proof_lines import STANDARD_OUTPUT, ProofLines
     from arboleda_proofs.campaigns.proof.proof_request import ProofRequest
-    from arboleda_proofs.campaigns.workers import processors
 
     is_read_along = json is not None and str(json) == STANDARD_OUTPUT
     json = None if is_read_along else json
@@ -146,6 +151,8 @@ def prove(
             check_writable(file)
     if pairs and budget == ALL:
         raise typer.BadParameter(say(PAIRS_TAKE(all=ALL)))
+    if on is not None and jobs is not None:
+        raise typer.BadParameter(say(ON_OR_JOBS()))
     if mend:  # it is asked for at the end: a package that is missing is named before
         extra("mend", MAKE, "--mend")
     request = ProofRequest(
@@ -167,7 +174,8 @@ def prove(
     )
     lines = ProofLines(sys.stdout if is_read_along else None)
     console = screen.console(language=language(), quiet=is_read_along)
-    raise typer.Exit(ProofCampaign(request, console, lines).run(jobs or processors()))
+    with crew(jobs, on, console) as those:
+        raise typer.Exit(ProofCampaign(request, console, lines).run(those))
 
 
 def seconds_of(budget: str) -> float:

@@ -12,10 +12,12 @@ from rich.text import Text
 
 from arboleda.cli.language import language
 from arboleda.cli.plant_options import IN_FOLDER, plant_here
-from arboleda.extension import Phrase, StoreAddress, say
+from arboleda.extension import Phrase, say
 from arboleda.plant_file.user_file import check_new, check_writable
 from arboleda_proofs.campaigns.options import CYCLES, LEVEL, SEED, SEEDS
 from arboleda_proofs.simulator.levels import LEVELS
+
+from .options import On
 
 if TYPE_CHECKING:
     from arboleda_proofs.campaigns.request import Request
@@ -32,7 +34,7 @@ arboleda simulate --until-failure            seed after seed until something bre
 arboleda simulate --seed 4711 --trace        one seed, line by line, the same every time
 arboleda simulate --seed 4711 --record seed.mcap  and look at it: arboleda record replay seed.mcap --page
 arboleda simulate --seeds 500 --json out.json
-arboleda simulate --seeds 9999 --store postgresql://... --worker  on as many hosts as there are
+arboleda simulate --seeds 9999 --on tcp://laptop:8786  on as many hosts as there are
 arboleda simulate --faults out.json --trace  what broke in there, with the faults it takes
 arboleda simulate --faults night.yaml        what a plant did: arboleda record export night.yaml
 arboleda simulate --faults unlike.yaml       what its devices did: arboleda record unlike --to unlike.yaml
@@ -108,13 +110,8 @@ Jobs = Annotated[
     typer.Option(metavar="N", min=1, help="How many processes share the seeds. [default: one per processor]"),
 ]
 
-Worker = Annotated[
-    bool,
-    typer.Option(
-        "--worker",
-        help="Share the seeds with every worker of the same options: they are rows of the --store.",
-    ),
-]
+Worker = Annotated[bool, typer.Option("--worker", hidden=True)]  # and --store, for one minor version
+Store = Annotated[str, typer.Option("--store", hidden=True)]
 DrawnPlants = Annotated[bool, typer.Option("--drawn-plants", hidden=True)]
 KeepPlant = Annotated[Path | None, typer.Option("--keep-plant", hidden=True)]
 FOR_DEVELOPERS = Phrase(
@@ -122,9 +119,14 @@ FOR_DEVELOPERS = Phrase(
     "drawn plants, --drawn-plants and --keep-plant are for developers of Arboleda, in a clone of its"
     " repository: type tools/drawn-plants instead of arboleda simulate, or make drawn-campaign",
 )
-WORKER_ALONE = Phrase(
-    "cli.simulate.worker_alone",
-    "--worker needs --store, and is one process: not with --jobs, --trace, --record, --until-failure",
+WORKERS_GONE = Phrase(
+    "cli.simulate.workers_gone",
+    "--worker and --store are gone: start `dask scheduler`, and `dask worker` on each host, then type"
+    " arboleda simulate --on tcp://HOST:8786; see docs/how-to/several-hosts.md",
+)
+ON_ALONE = Phrase(
+    "cli.simulate.on_alone",
+    "--on has the workers of other hosts run many seeds: not with --jobs, --trace, --record",
 )
 
 
@@ -174,13 +176,16 @@ def simulate(
     record: Record = None,
     trace: Trace = False,
     jobs: Jobs = None,
-    store: StoreAddress = "",
+    on: On = None,
     worker: Worker = False,
+    store: Store = "",
     drawn_plants: DrawnPlants = False,
     keep_plant: KeepPlant = None,
 ) -> None:
     if drawn_plants or keep_plant is not None:
         raise typer.BadParameter(say(FOR_DEVELOPERS()))
+    if worker or store:
+        raise typer.BadParameter(say(WORKERS_GONE()))
     output = Output(console=_loaded(), json=json, record=record, trace=trace)
     from arboleda_proofs.campaigns.request import Request
 
@@ -197,7 +202,7 @@ def simulate(
         standby=standby,
         revises=revisions,
     )
-    raise typer.Exit(_share(request, output, store, jobs) if worker else _run(request, output, jobs))
+    raise typer.Exit(_run(request, output, jobs, on))
 
 
 def _loaded() -> SpeakingConsole:
@@ -218,24 +223,17 @@ def _refuse(request: Request) -> None:
         raise typer.BadParameter(say(FOR_DEVELOPERS()))
 
 
-def _share(request: Request, output: Output, store: str, jobs: int | None) -> int:
-    """Do seeds of a campaign that several workers share; the exit status."""
-    if not store or request.one_seed or request.until_failure or jobs is not None:
-        raise typer.BadParameter(say(WORKER_ALONE()))
-    output.begin(request)
-    from arboleda_proofs.campaigns.shared import work
-
-    return work(request, output.console, store, output.json)
-
-
-def _run(request: Request, output: Output, jobs: int | None) -> int:
-    """Run the seeds here; the exit status."""
+def _run(request: Request, output: Output, jobs: int | None, on: str | None) -> int:
+    """Run the seeds, here or on the workers of a scheduler; the exit status."""
     from arboleda_proofs.campaigns import single_seed
+    from arboleda_proofs.campaigns.crews import crew
     from arboleda_proofs.campaigns.seed_campaign import SeedCampaign
-    from arboleda_proofs.campaigns.workers import processors
 
+    if on is not None and (request.one_seed or jobs is not None):
+        raise typer.BadParameter(say(ON_ALONE()))
     output.begin(request)
     console, json = output.console, output.json
     if request.one_seed:
         return single_seed.run(request, console, trace=output.trace, record=output.record, file=json)
-    return SeedCampaign(request, console, json).run(jobs or processors())
+    with crew(jobs, on, console) as those:
+        return SeedCampaign(request, console, json).run(those)

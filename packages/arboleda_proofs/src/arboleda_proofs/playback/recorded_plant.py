@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path, PurePosixPath
-from tempfile import TemporaryDirectory
 
 from arboleda.extension import ConfigError
 from arboleda.model.plant_files import PlantFiles
@@ -15,7 +14,7 @@ from arboleda.recorder.preamble import Beginning
 from arboleda.recorder.reader import Record
 from arboleda.recorder.version_files import versions_in
 from arboleda.runtime.rate import at_rate
-from arboleda_proofs.campaigns.plants import ELSEWHERE
+from arboleda_proofs.campaigns.plants import ELSEWHERE, read_from
 
 
 def model_of(beginning: Beginning, other: Path | None = None) -> PlantModel:
@@ -53,26 +52,9 @@ def with_content(files: PlantFiles, name: str, content: bytes) -> PlantFiles:
 
 
 def loaded(files: PlantFiles) -> PlantModel:
-    """The plant that these files describe; ConfigError with every problem."""
-    with TemporaryDirectory(prefix="arboleda-") as made:
-        return _loaded(files, Path(made))
-
-
-def _loaded(files: PlantFiles, folder: Path) -> PlantModel:
-    for name, content in files.contents.items():
-        path = folder / _inside(name)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(content)
-    model, recording = loader.load_recorded(folder / _inside(files.plant))
-    read = [] if recording is None else sorted(recording.files.contents.values())
-    if recording is not None and read != sorted(files.contents.values()):
-        raise NoRecord("The plant file of the record uses files by absolute paths, which are others now.")
-    return model
-
-
-def _inside(name: str) -> str:
-    """The name of a file in a record; NoRecord if it would be written somewhere else."""
-    path = PurePosixPath(name)
-    if path.is_absolute() or ".." in path.parts or not path.parts or "\0" in name:
-        raise NoRecord("Its plant file has a path that no plant writes.")
-    return name
+    """The plant that these files of a record describe; NoRecord, ConfigError with every problem."""
+    for name in (files.plant, *files.contents):
+        path = PurePosixPath(name)
+        if path.is_absolute() or ".." in path.parts or not path.parts or "\0" in name:
+            raise NoRecord("Its plant file has a path that no plant writes.")
+    return read_from(files)

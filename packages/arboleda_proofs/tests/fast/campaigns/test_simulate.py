@@ -23,6 +23,7 @@ from arboleda_proofs.campaigns import report, screen, setting
 from arboleda_proofs.campaigns.request import Request
 from arboleda_proofs.campaigns.seed_campaign import SeedCampaign
 from arboleda_proofs.campaigns.tally import Tally
+from arboleda_proofs.campaigns.workers import Processes
 from arboleda_proofs.simulator import judged
 from arboleda_proofs.simulator.faults import KINDS
 from arboleda_proofs.simulator.faults.titles import TITLES
@@ -300,7 +301,7 @@ def campaign(plant: Path, faults: object, second: float) -> str:
     console.file = io.StringIO()
     request = Request(plant=plant, seed=3, seeds=1, cycles=1, faults=str(faults))
     clock = count(0.0, second)
-    SeedCampaign(request, console, None, clock=lambda: float(next(clock))).run(1)
+    SeedCampaign(request, console, None, clock=lambda: float(next(clock))).run(Processes(1))
     return console.file.getvalue()
 
 

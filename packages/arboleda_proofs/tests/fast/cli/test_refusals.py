@@ -1,4 +1,4 @@
-"""Faults by hand from the command line, and what is refused of them and of a worker."""
+"""Faults by hand from the command line, and what is refused of them."""
 
 from __future__ import annotations
 
@@ -26,11 +26,6 @@ class Plant:
 
     def get(self, path: str) -> dict[str, Any]:
         return {"begun": [], "offers": [{**DONE, "lasts": True}]}
-
-
-def test_a_worker_without_the_store_of_its_campaign_is_refused(typed: Typed) -> None:
-    status, said = typed("simulate", "--worker")
-    assert status == 2 and "--worker needs --store" in said
 
 
 @pytest.mark.parametrize(

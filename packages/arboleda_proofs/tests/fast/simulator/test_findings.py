@@ -18,6 +18,7 @@ from arboleda_proofs.campaigns import report, single_seed, summary
 from arboleda_proofs.campaigns.request import Request
 from arboleda_proofs.campaigns.seed_campaign import BROKEN, HELD, SeedCampaign
 from arboleda_proofs.campaigns.tally import Tally
+from arboleda_proofs.campaigns.workers import Processes
 from arboleda_proofs.simulator.faults import Fault
 from arboleda_proofs.simulator.findings import Finding
 from arboleda_proofs.simulator.run import Result, Simulation
@@ -248,11 +249,11 @@ def test_tasks_that_tell_no_device_anything_end_a_seed_and_are_told(file: Path) 
 @pytest.mark.long
 def test_a_campaign_that_found_something_ends_with_1(file: Path, tmp_path: Path) -> None:
     request, console = Request(plant=file, seeds=1, cycles=2, faults="none"), Console(file=StringIO())
-    assert SeedCampaign(request, console, None).run(1) == BROKEN
+    assert SeedCampaign(request, console, None).run(Processes(1)) == BROKEN
     assert single_seed.run(request, console, trace=False, record=None, file=None) == BROKEN
     (tmp_path / "recipes.py").write_text(RECIPE.replace("plate=True", "plate=False"))
     request = Request(plant=file, seeds=1, cycles=2, faults="none")
-    assert SeedCampaign(request, console, None).run(1) == HELD
+    assert SeedCampaign(request, console, None).run(Processes(1)) == HELD
 
 
 ANSWERED = '<mover_says plate="true"/>'

@@ -12,6 +12,7 @@ from rich.console import Console
 from arboleda_proofs.campaigns.proof.proof_campaign import ProofCampaign
 from arboleda_proofs.campaigns.proof.proof_lines import ProofLines
 from arboleda_proofs.campaigns.proof.proof_request import ProofRequest
+from arboleda_proofs.campaigns.workers import Processes
 
 from .extract import shown
 from .process import Errand, errand, say, write
@@ -43,7 +44,7 @@ def prove(given: Errand) -> None:
     )
     screen = StringIO()
     console = Console(file=screen, width=SCREEN, highlight=False)
-    ProofCampaign(request, console, ProofLines(ProgressOnly())).run(1)
+    ProofCampaign(request, console, ProofLines(ProgressOnly())).run(Processes(1))
     (folder / TEXT).write_text(screen.getvalue(), "utf-8")
     for name in (JSON, HTML, TEXT):
         _rename(folder / name, given.shade.renamed)

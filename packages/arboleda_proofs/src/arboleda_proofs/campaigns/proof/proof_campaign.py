@@ -16,11 +16,11 @@ from arboleda.model.counting import counted
 from arboleda.model.packages import MAKE
 from arboleda.plant_check.check_answer import CheckAnswer
 
-from ..campaign import Campaign, Runs
+from ..campaign import Batch, Campaign, Crew, Runs
 from ..plants import notes
 from ..screen import Show, ends_of, print_whole, progress, say_of
 from ..seed_campaign import BROKEN, HELD, INTERRUPTED
-from ..workers import Workers
+from ..workers import Processes
 from . import equal_cells, proof_report, proof_summary
 from .badge import badge
 from .breaches import breaches_of
@@ -69,14 +69,14 @@ class ProofCampaign:
         self._is_cut = False  # the budget left no time for all tasks without faults
         self._known = 0  # runs that were kept from before
         self._total = 0
-        self._jobs = 1
+        self._crew: Crew = Processes(1)
         self._simulated_s = 0.0  # without faults
         self._spent = Spent()  # by runs with faults, but for those that were kept
         self._began, self._began_work = time.monotonic(), time.process_time()
 
-    def run(self, jobs: int) -> int:
+    def run(self, crew: Crew) -> int:
         """Prove, and return the exit status. Ctrl-C ends it with what was done so far."""
-        self._jobs = jobs
+        self._crew = crew
         for note in notes([self._plant]):
             self._say(note, "dim")
         status = INTERRUPTED
@@ -138,7 +138,7 @@ class ProofCampaign:
             proof=proof,
             share=self._share_to_come,
             pace=pace,
-            jobs=self._jobs,
+            jobs=self._crew.jobs,
             budget_s=max(left_s, 0.0),
             kept=kept,
         )
@@ -207,12 +207,9 @@ class ProofCampaign:
             if time.monotonic() - self._began > self._request.budget_s + LATE_S:
                 raise _BudgetOver
 
-        campaign: Campaign[Proved]
-        if self._jobs == 1:
-            campaign = Campaign(proof, numbers, tick=tick)
-        else:
-            # one ahead: none begins after the budget
-            campaign = Workers(proof, numbers, tick=tick, jobs=self._jobs, ahead=1)
+        # one ahead: none begins after the budget
+        batch = Batch(runs=proof, seeds=numbers, tick=tick, plants=(self._plant,), ahead=1)
+        campaign = self._crew.campaign(batch)
         return campaign
 
     def _within(self, share: float, work: Iterable[Work]) -> Iterator[Work]:
