@@ -10,7 +10,6 @@ OF_PACKAGES = (
     "drawn",
     "fuzzers",
     "kills/test_leaders.py",
-    "kills/test_workers.py",
     "mutation/test_engine_bugs.py",
     "mutation/test_mutants_apply.py",
     "test_campaign.py",

@@ -16,7 +16,6 @@ from arboleda.model.sentence import OWN
 
 from .leadership import Leaders, Leadership
 from .plant_memory import PlantMemory
-from .seeds import Seeds
 from .task_rows import History
 
 GROUP = "arboleda.stores"
@@ -34,7 +33,6 @@ class Databases(Protocol):
     def history(self, address: str, plant: str) -> History: ...
     def leadership(self, address: str, plant: str) -> Leadership: ...
     def leaders(self, address: str) -> Leaders: ...
-    def seeds(self, address: str, campaign: str) -> Seeds: ...
 
 
 def objection(address: str) -> str:

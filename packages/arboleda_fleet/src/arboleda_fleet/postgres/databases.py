@@ -7,7 +7,6 @@ from arboleda.runtime import invocation
 from arboleda.store.leadership import Leaders, Leadership
 from arboleda.store.plant_memory import PlantMemory
 from arboleda.store.schemes import Databases
-from arboleda.store.seeds import Seeds
 from arboleda.store.task_rows import History
 
 
@@ -36,11 +35,6 @@ class Postgres(Databases):
         from .leaders import PostgresLeaders
 
         return PostgresLeaders(address)
-
-    def seeds(self, address: str, campaign: str) -> Seeds:
-        from .seeds import SeedRows
-
-        return SeedRows(address, campaign)
 
 
 def refuse_without_library() -> None:

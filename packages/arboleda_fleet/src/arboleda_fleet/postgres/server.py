@@ -18,6 +18,7 @@ from arboleda.extension import ArboledaError, StartError
 from arboleda.store.address import has_password, is_address
 
 OLDEST = 13  # the oldest supported version of the server
+IDLE_MS = 1000
 ANSWER_S = 1.0  # a server that is silent for so long counts as away
 CONNECT_S = 2  # libpq takes no less
 SETTINGS = {
@@ -87,13 +88,13 @@ def checked(address: str) -> str:
     return address
 
 
-def connected(address: str, schema: str, *, idle_s: float = 1.0) -> Impatient:
+def connected(address: str, schema: str) -> Impatient:
     """A connection on which each statement is a transaction of its own; psycopg.Error, StartError.
 
-    Who is frozen between a statement and its end keeps others out for `idle_s` and no longer.
+    Who is frozen between a statement and its end keeps others out for IDLE_MS and no longer.
     """
     known = psycopg.conninfo.conninfo_to_dict(address)
-    limits = f"-c idle_in_transaction_session_timeout={1000 * idle_s:.0f} -c statement_timeout=5000"
+    limits = f"-c idle_in_transaction_session_timeout={IDLE_MS} -c statement_timeout=5000"
     wanted = SETTINGS | {"options": f"{limits} -c timezone=UTC"}
     ours: dict[str, Any] = {key: value for key, value in wanted.items() if key not in known}
     db = Impatient.connect(address, autocommit=True, **ours)
