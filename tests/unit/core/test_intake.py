@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NoReturn
 
 import pytest
@@ -10,7 +11,7 @@ from arboleda.core.intake import HISTORY, Intake
 from arboleda.core.plant import Plant
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import KeptTask, Revision, RevisionName, TaskChanged, TaskRequest, TaskState
-from arboleda.model.task import Task
+from arboleda.model.task import Order, Task
 from arboleda.testing import shipped
 
 
@@ -51,6 +52,17 @@ def test_a_task_is_forgotten_only_past_the_limit(intake: Intake) -> None:
     for number in range(HISTORY):
         remembered(intake, f"lot{number}", ended=True)
     assert "lot0" in intake.tasks
+
+
+def test_a_default_recipe_without_values_is_named_and_known_as_earlier_versions_kept_it() -> None:
+    model = shipped("sis_a")
+    cell = replace(model.cells[0], recipes=(replace(model.cells[0].recipe("palletizing"), is_default=True),))
+    intake = Intake(replace(model, cells=(cell,)), epoch=7)
+    task = intake.task("sis_a #lot1", best)
+    assert (task.order.text, task.order.short) == ("sis_a palletizing", "sis_a")
+    kept = Task("lot1", Order(text="sis_a", cell="sis_a", recipe="palletizing"))
+    intake.remember(kept)
+    assert intake.task("sis_a palletizing #lot1", best) is kept, "a finished order is not done twice"
 
 
 TEXT = "sis_a 0B 7 #lot1"

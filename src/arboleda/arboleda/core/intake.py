@@ -55,7 +55,7 @@ class Intake:
             self._count += 1
             order, choice = choose(orders) if len(orders) > 1 else (orders[0], None)
             return Task(id or f"t-{self.epoch}-{self._count}", order, choice)
-        if all(earlier.order.text != order.text for order in orders):
+        if not any(earlier.order.is_alike(order) for order in orders):
             raise TextError(ID_TAKEN(id=earlier.id, text=earlier.order.text))
         return earlier
 

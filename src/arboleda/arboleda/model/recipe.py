@@ -144,12 +144,17 @@ class Recipe:
         ends = self.ends_with or ((),)
         return tuple({str(values.get(what, what)): value for what, value in end} for end in ends)
 
+    @property
+    def goes_unnamed(self) -> bool:
+        """True where tasks are written without its name; without values the name alone says what is done."""
+        return self.is_default and bool(self.parameters)
+
     def form(self) -> Sentence:
         """The form in which a task of it is written."""
         form = VALUE_FORM(name=CELL())
         if self.alone is not None:
             form = ALONE_FORM(robot=self.alone_called() if self.alone_called else self.alone)
-        if not self.is_default:
+        if not self.goes_unnamed:
             form = NEXT_WORD(before=form, then=self.name)
         for each in self.parameters:
             name = each.called() if each.called else each.name

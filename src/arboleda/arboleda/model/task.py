@@ -13,13 +13,21 @@ from .sentence import NOTHING, Phrase, Sentence
 
 @dataclass(frozen=True, kw_only=True)
 class Order:
-    """A parsed task text: canonical words, the id after `#`, if any, and the value of each parameter."""
+    """A parsed task text: canonical words, the id after `#`, if any, and the value of each parameter.
+
+    `short` is the text without the name of a default recipe, by which earlier versions kept it.
+    """
 
     text: str
     cell: str
     recipe: str
     id: str | None = None
     values: Mapping[str, Any] = field(default_factory=dict)
+    short: str = ""
+
+    def is_alike(self, other: Order) -> bool:
+        """True for the text of the same work, as this version or an earlier one kept it."""
+        return self.text in (other.text, other.short)
 
 
 LEGAL: dict[TaskState, frozenset[TaskState]] = {

@@ -152,9 +152,10 @@ def _named_cells(word: str, plant: PlantModel) -> list[str]:
 
 
 def _order(cell: Cell, recipe: Recipe, words: Mapping[str, str], id: str | None) -> Order:
-    head = [cell.name] if recipe.is_default else [cell.name, recipe.name]
+    short, full = ([*head, *words.values()] for head in ([cell.name], [cell.name, recipe.name]))
     return Order(
-        text=" ".join([*head, *words.values()]),
+        text=" ".join(short if recipe.goes_unnamed else full),
+        short=" ".join(short if recipe.is_default else full),
         cell=cell.name,
         recipe=recipe.name,
         id=id,

@@ -199,7 +199,7 @@ class Keeping:
         of_cell, seen, source = self._of_cell(order.recipe)
         tree = self._build(order, self._context)
         of_tree = fingerprint.of_tree(tree, seen, source=source)
-        made = fingerprint.BY_SOURCE + fingerprint.joined(of_cell, order.text, of_tree)
+        made = fingerprint.BY_SOURCE + fingerprint.joined(of_cell, order.short, of_tree)
         self._begun = Begun(made=made, planned=planned, envelope=envelope)
         return tree
 
@@ -223,4 +223,4 @@ class Keeping:
         seen: fingerprint.Seen = {}
         of_cell = fingerprint.of_cell(self._context.cell, order.recipe, seen, by_code=True)
         of_tree = fingerprint.of_tree(tree, seen, by_code=True)
-        return made == fingerprint.joined(of_cell, order.text, of_tree)
+        return made == fingerprint.joined(of_cell, order.short, of_tree)

@@ -20,7 +20,7 @@ def cleaned(folder: Path, plant: str) -> Calm:
 
 def test_a_task_gets_a_part_where_another_cell_puts_some(tmp_path: Path) -> None:
     calm = cleaned(tmp_path, PLANT)
-    assert calm.scenario.name == "wash (a part is brought to rack)"
+    assert calm.scenario.name == "wash clean (a part is brought to rack)"
     assert calm.is_sound
     assert not list(run_findings(calm)), "also when it is asked for once more"
 

@@ -134,7 +134,7 @@ def test_a_recipe_that_gives_up_in_silence_is_found_and_its_test_fails_alike(
     assert "lamp: lit: false" in page.read_text()
     assert "shine" in page.read_text().partition("The tree when it broke")[2]
     assert "lamp.lit is false, not true (the plant was told: a check would notice)" in said
-    assert "bench breaks a rule" in said and "BROKEN: 1 breach" in said
+    assert "bench shine breaks a rule" in said and "BROKEN: 1 breach" in said
     namespace: dict[str, Any] = {}
     exec(tests.read_text(), namespace)
     (written,) = [each for name, each in namespace.items() if name.startswith("test_")]
@@ -149,8 +149,8 @@ def test_each_answer_that_leads_elsewhere_is_a_scenario(plant: Path) -> None:
     model = model_of(plant)
     found = list(calm_runs(model, scenarios(model)))
     assert [(each.scenario.name, each.run.outcome.words) for each in found] == [
-        ("bench", "done"),
-        ("bench (lamp says bad)", "failed: rejected"),
+        ("bench shine", "done"),
+        ("bench shine (lamp says bad)", "failed: rejected"),
     ]
     assert all(each.is_sound for each in found)
 
@@ -254,7 +254,7 @@ def test_the_page_and_the_junit_file_say_what_broke_and_what_nobody_notices(
     assert re.search("<span lang=en>[^<]+ is called done[^<]+</span><span lang=es>[^<]+ se da por", said)
     assert "http://" not in said and "https://" not in said
     suite = Xml.parse(junit).getroot()[0]
-    assert [case.get("name") for case in suite] == ["without faults: bench", "refuses", "lying_fact"]
+    assert [case.get("name") for case in suite] == ["without faults: bench shine", "refuses", "lying_fact"]
     assert [case.find("failure") is not None for case in suite] == [False, True, False]
     assert "nobody notices" in (suite[2].findtext("system-out") or "")
 
@@ -335,7 +335,7 @@ def test_a_test_tells_what_breaks_a_recipe(plant: Path) -> None:
     sim = Sim(plant.parent)
     sim.plant("small.yaml")
     with pytest.raises(
-        AssertionError, match=r"(?s)bench breaks recipes_end_as_they_say.*the fault: lamp: It refuses"
+        AssertionError, match=r"(?s)bench shine breaks recipes_end_as_they_say.*the fault: lamp: It refuses"
     ):
         sim.prove("shine", "refuses")
     with pytest.raises(ArboledaError, match="'rain' is not a kind of fault"):
@@ -350,7 +350,7 @@ def test_a_program_reads_progress_then_the_answer_as_lines(plant: Path, prove: P
     last = [row["progress"] for row in rows if "progress" in row][-1]
     assert (last["phase"], last["done"], last["of"]) == ("proving", 12, 12)
     broken = next(row["broken"] for row in rows if "broken" in row)
-    assert broken["task"] == "bench" and broken["kind"] == "refuses" and broken["outcome"]["broken"]
+    assert broken["task"] == "bench shine" and broken["kind"] == "refuses" and broken["outcome"]["broken"]
     assert rows[-1]["answer"]["runs"] == {"done": 12, "of": 12, "represented": 20}
 
 
@@ -372,8 +372,8 @@ def test_each_answer_of_a_person_is_a_scenario(plant: Path) -> None:
     model = model_of(plant)
     found = list(calm_runs(model, scenarios(model)))
     assert [(each.scenario.name, each.run.outcome.words) for each in found] == [
-        ("bench", "done"),
-        ("bench (ana says no)", "failed: rejected"),
+        ("bench shine", "done"),
+        ("bench shine (ana says no)", "failed: rejected"),
     ]
     assert found[0].commands[0] == "ana: asking ana"
     assert "ana: asking ana" in {each.what for each in found[0].instants}
@@ -384,7 +384,7 @@ ONCE = PLANT.replace("light: {effect: switch,", "light: {effect: switch, needs: 
 
 def test_a_task_that_is_not_done_a_second_time_is_named(plant: Path, prove: Prove) -> None:
     plant.write_text(ONCE)
-    assert "bench: once more, without any fault, it is not done: failed" in prove("--fault", "forgets")
+    assert "bench shine: once more, without any fault, it is not done: failed" in prove("--fault", "forgets")
     assert "lit" in summary(plant)["scenarios"][0]["once_more"]
 
 

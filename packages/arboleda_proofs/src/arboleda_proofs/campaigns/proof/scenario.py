@@ -77,7 +77,7 @@ def _of_recipe(cell: Cell, recipe: Recipe, context: Context) -> Iterator[Scenari
         classes.setdefault(shape(cell, recipe.build(order, context)), []).append(order)
     for alike in [*classes.values()][:MOST_CLASSES]:
         words = alike[0].text.split()
-        task = " ".join([words[0], *words[2:]] if recipe.is_default else words)
+        task = " ".join([words[0], *words[2:]] if recipe.goes_unnamed else words)
         yield Scenario(cell=cell.name, recipe=recipe.name, task=task, alike=len(alike))
 
 

@@ -133,7 +133,8 @@ def _meant(model: PlantModel, text: str) -> Meaning | None:
                 _is_called(words[0], cell, recipe)
                 and (values := _values(cell, recipe, words[1:])) is not None
             ):
-                head = [cell.name] if recipe.is_default else [cell.name, recipe.name]
+                is_short = recipe.is_default and recipe.parameters
+                head = [cell.name] if is_short else [cell.name, recipe.name]
                 return Meaning(cell=cell.name, recipe=recipe, words=" ".join([*head, *values]), id=id)
     return None
 
