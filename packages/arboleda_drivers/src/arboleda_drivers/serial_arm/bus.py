@@ -51,9 +51,9 @@ class Bus:
         self._packets = PacketReader(self._maker.framing, replies=True)
         self._waiting: deque[int] = deque()  # servos that are still to be asked in this round
         self._question: Question | None = None
-        self._round_at = self._opened_at = now
+        self._round_at = now
         self._modes: set[int] | None = set()  # None: all are known
-        self._answered_at: dict[int, float] = {}
+        self._unanswered: dict[int, list[float]] = {}  # when servos were asked since they answered last
         self._readings: dict[int, Reading] = {}  # of this round
 
     @property
@@ -79,6 +79,7 @@ class Bus:
                 return
 
     def _ask(self, now: float, id: int) -> None:
+        self._unanswered.setdefault(id, []).append(now)
         mark = 0 if self._modes is not None else self._mark
         address, length = (self._maker.mode[0], 1) if self._modes is not None else self._maker.block
         self._question = Question(id=id, at=now, length=length + mark, mark=mark)
@@ -103,7 +104,8 @@ class Bus:
         question = self._question
         if question is None or packet.id != question.id or len(packet.data) != question.length:
             return  # the echo of a question, or an answer that came too late
-        self._question, self._answered_at[packet.id] = None, now
+        self._question = None
+        self._unanswered.pop(packet.id, None)
         if self._modes is None:
             state = replace(packet, data=packet.data[question.mark :])
             self._readings[packet.id] = self.latest[packet.id] = self._maker.reading(question.at, state)
@@ -114,12 +116,15 @@ class Bus:
             raise LinkBroken(f"{servo} is in operating mode {packet.data[0]}, which holds no position")
 
     def silence(self, now: float, patience_s: float) -> str:
-        """The sentence on servos that have said nothing for so long, or longer; "" for none."""
+        """The sentence on servos that have not answered for so long, or longer; "" for none.
+
+        One question without an answer is none: this process may have been stalled since it was asked.
+        """
         # Nobody is heard more often than once in a round, however long the silent ones make it.
         round_s = len(self._names) * self._settings.reply_s + self._settings.poll_s
         longest_s = max(SILENT_S, patience_s, round_s)
-        heard_at = {id: self._answered_at.get(id, self._opened_at) for id in self._names}
-        silent = [id for id, at in heard_at.items() if now - at > longest_s]
+        asked = self._unanswered.items()
+        silent = [id for id, at in asked if len(at) > 1 and now - at[0] > longest_s]
         if len(silent) == len(self._names):
             return "no servo answers; is the arm powered, and the baud rate right?"
         return f"servo {silent[0]} ({self._names[silent[0]]}) does not answer" if silent else ""

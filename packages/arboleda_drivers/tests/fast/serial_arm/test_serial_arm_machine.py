@@ -130,6 +130,15 @@ def test_a_servo_that_does_not_answer_has_the_others_hold(maker: str) -> None:
 
 
 @MAKERS
+def test_a_process_that_stood_still_takes_no_servo_for_silent(maker: str) -> None:
+    rig = ServoRig(maker)
+    before = len(rig.reports)
+    rig.line.pass_time(rig.line.now + 0.6)
+    rig.wait(0.3)
+    assert {report.state for report in rig.reports[before:]} == {STILL}
+
+
+@MAKERS
 def test_power_that_is_lost_is_a_boot(maker: str) -> None:
     rig = ServoRig(maker)
     rig.until(done=rig.move(10, 0, 0, 0, 0))
