@@ -26,6 +26,7 @@ from .spent import Spent
 T = TypeVar("T")
 Tick = Callable[[], None]
 MOST = 8  # faults of a portion: once begun, it goes on when the budget is over
+FEW = 64  # runs of a scenario, which go to their ends: to know how the world is without a fault takes longer
 RANKS = (0, 1, 1, 1, 2, 3)  # of the parts of an instant
 
 
@@ -107,6 +108,16 @@ class Proof:
     def number(self, name: str) -> int:
         """The number of the portion of this name; KeyError where there is none."""
         return self._numbers[name]
+
+    @cached_property
+    def _with_course(self) -> frozenset[int]:
+        """The numbers of the portions for which the course of the calm run is worth its time."""
+        runs, found = Counter[int](), set[int]()
+        for number, portion in enumerate(self.portions):
+            if runs[portion.scenario] >= FEW:
+                found.add(number)
+            runs[portion.scenario] += self.count(number)
+        return frozenset(found)
 
     def _course(self, row: int) -> Course:
         """The course of the calm run of this number."""
@@ -197,22 +208,24 @@ class Proof:
     def run(self, seed: int, *, tick: Tick | None = None) -> Proved:
         """Run all faults of the portion of this number."""
         portion = self.portions[seed]
-        walk = self._walk(portion.scenario, self.instant(portion).at)
+        course = self._course(portion.scenario) if seed in self._with_course else None
+        walk = self._walk(portion.scenario, self.instant(portion).at, course)
         runs = walk.runs([(each,) for each in self.faults(portion)], tick or (lambda: None))
         spent = walk.spent()
         spent.courses_s, self._unsaid.courses_s = self._unsaid.courses_s, 0.0
         return proved_by(seed, runs, spent)
 
-    def _walk(self, row: int, at: float) -> Walk:
+    def _walk(self, row: int, at: float, course: Course | None) -> Walk:
         """The walk along the calm run of this number that still comes to `at` s; there is one at a time."""
-        walk = self._walks.get(row)
+        key = row, course is not None
+        walk = self._walks.get(key)
         if walk is None or not walk.reaches(at):
             self._walks.clear()
-            walk = self._walks[row] = Walk(self.model, self.calm[row], self._course(row))
+            walk = self._walks[key] = Walk(self.model, self.calm[row], course)
         return walk
 
     @cached_property
-    def _walks(self) -> dict[int, Walk]:
+    def _walks(self) -> dict[tuple[int, bool], Walk]:
         return {}
 
 

@@ -33,10 +33,10 @@ def single_faults(
     """
     kinds = [kind for kind in possible_kinds() if not only or kind.name in only]
     parts: list[list[Fault]] = [[] for _ in range(OTHER_FORMS + 1)]
-    at_work = _at_work(cell, instant)
+    at_work, elsewhere = _at_work(cell, instant), _elsewhere(model, cell)
     for kind in kinds:
         for target in dict.fromkeys(kind.targets(model)):
-            forms = [] if target in _elsewhere(model, cell) else _forms(kind, model, target, instant)
+            forms = [] if target in elsewhere else _forms(kind, model, target, instant)
             for index, form in enumerate(_from(number, forms)):
                 part = _part(kind.name) if target in at_work else OF_OTHERS
                 parts[OTHER_FORMS if index else part].append(form)
@@ -47,7 +47,8 @@ def single_faults(
 def _seen(model: PlantModel, cell: Cell, instant: Instant, seen: Sequence[Recurring]) -> Iterator[Fault]:
     """The faults that were seen, as hard as they were, of the devices of this cell."""
     faults = (fault for each in seen for fault in each.hardest(model, instant.at))
-    return (fault for fault in faults if fault.target not in _elsewhere(model, cell))
+    elsewhere = _elsewhere(model, cell)
+    return (fault for fault in faults if fault.target not in elsewhere)
 
 
 def _part(kind: str) -> int:
