@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter, deque
+from collections import defaultdict, deque
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -285,12 +285,12 @@ class Attendant:
 
     It also sees to supplies and outputs for which a task waits, as people do who keep these. It neither
     brings back what is lost nor repairs what is broken: that ends with its fault. What several cells advise
-    in one round, as to clear a device that they share, it does once. `acts` has how many acts it did that a
-    cell advised, by cell; between two rounds there are `round_s`.
+    in one round, as to clear a device that they share, it does once. `acts` has what it did of the advice
+    of each cell; between two rounds there are `round_s`.
     """
 
     def __init__(self, world: World, seed: int, *, round_s: tuple[float, float] = ROUND_S) -> None:
-        self.acts = Counter[str]()
+        self.acts = defaultdict[str, list[Advice]](list)
         self._round_s = round_s
         self._world = world
         self._dice = Dice(seed, "attendant")
@@ -338,6 +338,6 @@ class Attendant:
             if act not in done:
                 do(self._world, advice)
                 done.add(act)
-            self.acts[cell] += 1
+            self.acts[cell].append(advice)
             if advice.do not in (Hand.CHECK, Hand.REFERENCE):
                 return

@@ -27,8 +27,9 @@ from arboleda_proofs.campaigns.proof.changed_recipe import noticed_with, with_ch
 from arboleda_proofs.campaigns.proof.course import course_of
 from arboleda_proofs.campaigns.proof.forks import run_all, run_one
 from arboleda_proofs.campaigns.proof.instants import Instant, Side
-from arboleda_proofs.campaigns.proof.outcome import End
+from arboleda_proofs.campaigns.proof.outcome import End, outcome_from, plain
 from arboleda_proofs.campaigns.proof.proof import MOST, Proof, Proved
+from arboleda_proofs.campaigns.proof.proof_tally import ProofTally
 from arboleda_proofs.campaigns.proof.scenario import scenarios
 from arboleda_proofs.campaigns.proof.single_faults import single_faults
 from arboleda_proofs.campaigns.proof.spent import Spent
@@ -532,6 +533,16 @@ def test_runs_that_have_begun_are_given_up_soon_after_the_budget(
     monkeypatch.setattr(proof_campaign, "time", clock)
     assert f"HELD in {MOST} of " in prove("--budget", f"{4 * MOST + 8}s")  # no more than the first portion
     assert 4 * MOST + 8 < now[0] <= 4 * MOST + 8 + 5
+
+
+def test_the_acts_that_got_a_cell_ready_are_known_by_step(plant: Path) -> None:
+    model, calm = calm_of(plant)
+    proof = Proof(model=model, calm=(calm,), kinds=("operator_stop",))
+    tally = ProofTally(proof=proof, proved={0: proof.run(0)})
+    by_step = {case.instant.what: case.outcome for case in tally.cases()}
+    assert by_step["the request"].did == ("clear bench", "reset bench", "resume bench")
+    assert {len(each.did) for each in by_step.values()} == {each.acts for each in by_step.values()} == {3}
+    assert all(outcome_from(json.loads(json.dumps(plain(each)))) == each for each in by_step.values())
 
 
 def test_what_a_run_took_is_said_and_on_what(plant: Path, prove: Prove) -> None:

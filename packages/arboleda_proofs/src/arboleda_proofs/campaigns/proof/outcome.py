@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from enum import Enum
 from typing import Any
 
@@ -27,14 +27,16 @@ IS_DONE = (End.DONE, End.RECOVERED)
 @dataclass(frozen=True, kw_only=True)
 class Outcome:
     """Outcome of one run. `cause`: of a failure or a hold, a word. `alone`: its cell got ready again without
-    a person; `acts`: so many of those that the plant advises got it ready, None: it never was. `untrue`: what
-    is not so although the task is done. `broken`: the invariant and the sentence.
+    a person; `acts`: so many of those that the plant advises got it ready, None: it never was; `did`: which,
+    in the plant's words. `untrue`: what is not so although the task is done. `broken`: the invariant and the
+    sentence.
     """
 
     end: End
     cause: str = ""
     alone: bool = True
     acts: int | None = 0
+    did: tuple[str, ...] = ()
     untrue: tuple[str, ...] = ()
     broken: tuple[str, str] | None = None
 
@@ -68,6 +70,11 @@ class Run:
     joined_at: float | None = None
 
 
+def with_acts(outcome: Outcome, acts: tuple[str, ...] | None) -> Outcome:
+    """An outcome with the acts that got the cell ready; None: it never was."""
+    return replace(outcome, acts=None if acts is None else len(acts), did=acts or ())
+
+
 def plain(outcome: Outcome) -> dict[str, Any]:
     """An outcome for JSON."""
     return {**asdict(outcome), "end": outcome.end.value}
@@ -81,6 +88,7 @@ def outcome_from(data: dict[str, Any]) -> Outcome:
         cause=data["cause"],
         alone=data["alone"],
         acts=data["acts"],
+        did=tuple(data["did"]),
         untrue=tuple(data["untrue"]),
         broken=None if broken is None else (broken[0], broken[1]),
     )

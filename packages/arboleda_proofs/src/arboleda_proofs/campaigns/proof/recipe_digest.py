@@ -16,7 +16,7 @@ from arboleda.model.plant_model import PlantModel
 from .proof_tally import RecipeKey
 from .scenario import alone
 
-FORMAT = 4  # of what is kept; another one is another digest
+FORMAT = 5  # of what is kept; another one is another digest
 PYTHON = ".py"
 BY_OTHER_NAMES = frozenset(
     {"globals", "vars", "eval", "exec", "getattr", "__dict__", "modules", "getmembers"}

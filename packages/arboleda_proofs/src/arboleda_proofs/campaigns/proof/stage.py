@@ -10,7 +10,7 @@ from hashlib import blake2b
 
 from arboleda.engine import CellRun, Entry, Plant
 from arboleda.engine.inspection import EMPTY, ledger_of, places_of, tasks_of
-from arboleda.model.advice import Hand
+from arboleda.model.advice import Hand, in_words
 from arboleda.model.cell_states import CellState
 from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.model.plant_model import Link, PlantModel
@@ -25,7 +25,7 @@ from arboleda_proofs.simulator.run import NO_EXCEPTION
 from arboleda_proofs.simulator.truth.refused_commands import RefusedCommands
 
 from .end_state import EndState, differences, end_state, facts_by_report, stated
-from .outcome import IS_DONE, End, Outcome, Run
+from .outcome import IS_DONE, End, Outcome, Run, with_acts
 from .scenario import Scenario, alone
 from .standstill import Standstill
 
@@ -98,7 +98,7 @@ class Stage:
         self.lacks: str | None = None
         self._scenario, self._request = scenario, REQUEST
         self._attendant: Attendant | None = None
-        self._acts: int | None = None  # of the attendant, when the cell was ready first
+        self._acts: tuple[str, ...] | None = None  # of the attendant, when the cell was ready first
         self._order: Order | None = None  # what the plant made of it
         FixedAnswers(self.world, dict(scenario.answers))
         self.world.watchers.append(self._look)
@@ -132,7 +132,7 @@ class Stage:
             self._attendant = Attendant(self.world, seed=0, round_s=STANDS_BY_S)
             self.watched.come_to_rest(self._stands_still)
             self.watched.look_around()
-            outcome = replace(outcome, acts=0 if outcome.alone else self._acts)
+            outcome = outcome if outcome.alone else with_acts(outcome, self._acts)
         except Rejoined as rejoined:
             digest = _hashed(self.watched.trace.digest, rejoined.run.digest)
             return replace(rejoined.run, digest=digest, joined_at=self.watched.seconds)
@@ -286,7 +286,7 @@ class Stage:
         ):
             self._look_up(self.last_change)
         if self._attendant is not None and self._acts is None and self._is_ready():
-            self._acts = self._attendant.acts[self.cell.name]
+            self._acts = tuple(str(in_words(each)) for each in self._attendant.acts[self.cell.name])
 
     def _count_ended(self) -> None:
         """Count the commands of the task that are done, have failed, or could not even be given."""
