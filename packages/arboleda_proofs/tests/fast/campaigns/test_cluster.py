@@ -74,8 +74,8 @@ class Played:
     hear: Callable[[Any], None] = lambda event: None
     is_closed: bool = False
 
-    def scheduler_info(self) -> Any:
-        return {"workers": {address: {"nthreads": each.threads} for address, each in self.hosts.items()}}
+    def nthreads(self) -> Mapping[str, int]:
+        return {address: each.threads for address, each in self.hosts.items()}
 
     def get_executor(self, *, pure: bool) -> Played:
         assert not pure, "equal portions would be one"
@@ -298,7 +298,7 @@ def test_a_scheduler_that_goes_is_said(staged: Callable[..., Stage], monkeypatch
     def gone() -> None:
         raise OSError("no route to host")
 
-    monkeypatch.setattr(stage.client, "scheduler_info", gone)
+    monkeypatch.setattr(stage.client, "nthreads", gone)
     with pytest.raises(ArboledaError, match="does not answer any more"):
         assert stage.cluster.jobs
 
