@@ -123,8 +123,8 @@ class Bus:
         # Nobody is heard more often than once in a round, however long the silent ones make it.
         round_s = len(self._names) * self._settings.reply_s + self._settings.poll_s
         longest_s = max(SILENT_S, patience_s, round_s)
-        asked = self._unanswered.items()
-        silent = [id for id, at in asked if len(at) > 1 and now - at[0] > longest_s]
-        if len(silent) == len(self._names):
+        asked = self._unanswered
+        silent = [id for id, at in asked.items() if len(at) > 1 and now - at[0] > longest_s]
+        if silent and len(asked) == len(self._names):
             return "no servo answers; is the arm powered, and the baud rate right?"
         return f"servo {silent[0]} ({self._names[silent[0]]}) does not answer" if silent else ""
