@@ -121,7 +121,6 @@ def cable() -> Iterator[tuple[str, tuple[str, ...]]]:
         subprocess.run(("ip", "netns", "del", name), check=False)
 
 
-@pytest.mark.smoke
 def test_workers_of_a_scheduler_find_what_one_process_finds(site: Site, tmp_path: Path) -> None:
     words = ("--seeds", "2", "--cycles", "1", "--faults", "none")
     for _ in range(2):
