@@ -19,6 +19,7 @@ setup(
             "dashboard/assets/*",
             "dashboard/*/assets/*",
             "dashboard/*/languages/*/*.yaml",
+            "examples/*/*.json",
             "examples/*/*.py",
             "examples/*/*.xml",
             "examples/*/*.yaml",
