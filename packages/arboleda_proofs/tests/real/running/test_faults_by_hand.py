@@ -58,10 +58,14 @@ def test_a_fault_begins_shows_and_ends_by_command_and_in_the_drawer_of_the_page(
 
     page = browser.new_context().new_page()
     page.set_default_timeout(PATIENCE_MS)
+    held: list[Any] = []
+    page.route("**/faults.js", held.append)  # the menu is open before the script of its drawer has come
     page.goto(f"{address}/?lang=es")
     connected(page)
     operate(page, "sis_a")
     page.click("#faults summary")
+    held[0].continue_()
+    page.wait_for_selector("#fault-target option[hidden]", state="attached")
     assert page.locator("#fault-target option:not([hidden])").all_text_contents() == ["ra1", "rm_sis_a"]
     page.select_option("#fault-target", "rm_sis_a")
     page.wait_for_selector("[data-fault=no_grip]", state="hidden")

@@ -9,7 +9,10 @@ const listeners = [];
 let of = null; // the cell, "" for the plant; null while it is closed
 let tab = null; // where it was opened
 
-export const onOpen = (listener) => listeners.push(listener);
+export function onOpen(listener) {
+  listeners.push(listener);
+  if (of !== null) listener(of); // the script of a package may come after the menu was opened
+}
 
 export function start() {
   scope.start();
