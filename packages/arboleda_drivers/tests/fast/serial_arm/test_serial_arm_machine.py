@@ -130,6 +130,14 @@ def test_a_servo_that_does_not_answer_has_the_others_hold(maker: str) -> None:
 
 
 @MAKERS
+def test_the_line_is_blamed_where_no_servo_answers(maker: str) -> None:
+    rig = ServoRig(maker)
+    rig.faults.switch("mute", on=True)
+    lost = rig.until(state=MotionState.NO_LINK)
+    assert str(lost.lost).endswith(": no servo answers; is the arm powered, and the baud rate right?")
+
+
+@MAKERS
 def test_a_process_that_stood_still_takes_no_servo_for_silent(maker: str) -> None:
     rig = ServoRig(maker)
     before = len(rig.reports)
