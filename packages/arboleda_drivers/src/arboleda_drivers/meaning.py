@@ -139,7 +139,7 @@ def as_text(value: object) -> str:
 
 
 def in_words(meant: Any) -> str:
-    """What a word means, for people: a value, the least and the greatest, or several texts."""
+    """The meaning of a word, for people: a value, the least and the greatest, or several texts."""
     if not isinstance(meant, list | tuple):
         return as_text(meant)
     return (" to " if is_range(meant) else " or ").join(map(as_text, meant))

@@ -19,7 +19,8 @@ from arboleda.extension import ArboledaError
 from arboleda.model.plant_files import PlantFiles
 
 from .campaign import R, Runs, SoFar
-from .plants import Plant, read_from
+from .plant_reading import read_from
+from .plants import Plant
 from .same_code import code, difference, packages
 from .workers import collect_rarely
 

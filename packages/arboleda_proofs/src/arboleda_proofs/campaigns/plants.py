@@ -5,19 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any, Protocol
 
-from arboleda.extension import ConfigError
 from arboleda.model.plant_files import NO_FILES, PlantFiles
 from arboleda.model.plant_model import Link, PlantModel
 from arboleda.plant_check.unstated import unknowns
-from arboleda.plant_file import loader
 from arboleda_proofs.simulator.findings import Finding
 from arboleda_proofs.simulator.invariants import Invariant
 
-ABSOLUTE = "the plant file uses files by absolute paths, which are others here"
 ELSEWHERE = (Link.ROS, Link.NONE, Link.DRIVER)  # robots without a board on MQTT, which get a virtual one
 
 
@@ -78,19 +73,6 @@ class PlantRotation:
 
     def of(self, seed: int) -> Plant:
         return self.plants[seed % len(self.plants)]
-
-
-def read_from(files: PlantFiles) -> PlantModel:
-    """The plant that these files describe, in a folder of their own; ConfigError with every problem."""
-    with TemporaryDirectory(prefix="arboleda-") as made:
-        for name, content in files.contents.items():
-            path = Path(made, name)
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_bytes(content)
-        model, read = loader.load_with_files(Path(made, files.plant))
-    if sorted(read.contents.values()) != sorted(files.contents.values()):
-        raise ConfigError((ABSOLUTE,))
-    return model
 
 
 def notes(plants: Iterable[Plant]) -> list[str]:

@@ -14,7 +14,8 @@ from arboleda.recorder.preamble import Beginning
 from arboleda.recorder.reader import Record
 from arboleda.recorder.version_files import versions_in
 from arboleda.runtime.rate import at_rate
-from arboleda_proofs.campaigns.plants import ELSEWHERE, read_from
+from arboleda_proofs.campaigns.plant_reading import read_from
+from arboleda_proofs.campaigns.plants import ELSEWHERE
 
 
 def model_of(beginning: Beginning, other: Path | None = None) -> PlantModel:

@@ -51,7 +51,7 @@ class Walk:
         return at >= self._at
 
     def spent(self) -> Spent:
-        """What it took since this was asked before."""
+        """The cost since this was asked before."""
         spent, self._spent = self._spent, Spent()
         return spent
 

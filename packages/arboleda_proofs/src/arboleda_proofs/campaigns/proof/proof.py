@@ -133,7 +133,7 @@ class Proof:
 
     @cached_property
     def _unsaid(self) -> Spent:
-        """What courses took that no portion has counted yet."""
+        """The cost of courses that no portion has counted yet."""
         return Spent()
 
     @cached_property

@@ -39,7 +39,7 @@ class Spent:
 
     @property
     def words(self) -> str:
-        """What a run took on the average."""
+        """The average cost of a run."""
         shared_s = self.courses_s + self.walks_s
         all_s = (self.steps_s + self.forks_s + shared_s, self.steps_s, self.forks_s, shared_s)
         whole, steps, forks, shared = (f"{seconds / self.runs * 1000:,.0f} ms" for seconds in all_s)
