@@ -11,7 +11,8 @@ from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_check import draft_check, unstated
 from arboleda.plant_file import loader
 from arboleda_make.drafts.draft import draft_of
-from arboleda_proofs.campaigns.plants import Plant, notes
+from arboleda_proofs.campaigns.plant_notes import notes
+from arboleda_proofs.campaigns.plants import Plant
 
 
 def test_what_a_file_does_not_state_is_offered_with_its_place_in_the_file(tmp_path: Path) -> None:

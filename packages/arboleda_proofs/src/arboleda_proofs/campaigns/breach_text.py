@@ -10,7 +10,8 @@ from rich.text import Text
 from arboleda.model.counting import counted
 from arboleda_proofs.simulator.run import Result
 
-from .plants import Plant, notes
+from .plant_notes import notes
+from .plants import Plant
 from .setting import rules
 from .words import fault_said
 

@@ -9,7 +9,6 @@ from typing import Any, Protocol
 
 from arboleda.model.plant_files import NO_FILES, PlantFiles
 from arboleda.model.plant_model import Link, PlantModel
-from arboleda.plant_check.unstated import unknowns
 from arboleda_proofs.simulator.findings import Finding
 from arboleda_proofs.simulator.invariants import Invariant
 
@@ -73,19 +72,3 @@ class PlantRotation:
 
     def of(self, seed: int) -> Plant:
         return self.plants[seed % len(self.plants)]
-
-
-def notes(plants: Iterable[Plant]) -> list[str]:
-    """The notes for a person on how these plants are simulated, and on what nobody can judge in them."""
-    listed = list(plants)
-    robots = [robot for plant in listed for robot in plant.declared.robots.values()]
-    names = {link: ", ".join(robot.name for robot in robots if robot.link is link) for link in Link}
-    instead = "simulated as if each had a virtual board on MQTT"
-    others = [link for link in ELSEWHERE if names[link]]
-    linked = [f"declared link: {link.value}, {instead}: {names[link]}" for link in others]
-    return [*linked, *unjudged(listed)]
-
-
-def unjudged(plants: Iterable[Plant]) -> list[str]:
-    """The sentences on what nobody can judge in these plants, as their files do not state it."""
-    return [sentence for plant in plants for sentence in unknowns(plant.declared)]

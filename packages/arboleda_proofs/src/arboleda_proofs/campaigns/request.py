@@ -20,7 +20,8 @@ from arboleda_proofs.simulator.levels import CRASHES, LEVELS
 
 from .faults_file import FaultsFile, line_of, read
 from .options import CYCLES, LEVEL, ONE_SEED, OWN_DEATHS, SEED, SEEDS, STANDBY_OR_REVISIONS
-from .plants import Plant, PlantRotation, Plants, notes, unjudged
+from .plant_notes import notes, unjudged
+from .plants import Plant, PlantRotation, Plants
 from .setting import Setting
 
 COMMAND = ("arboleda", "simulate")

@@ -17,7 +17,7 @@ from arboleda.model.packages import MAKE
 from arboleda.plant_check.check_answer import CheckAnswer
 
 from ..campaign import Batch, Campaign, Crew, Runs
-from ..plants import notes
+from ..plant_notes import notes
 from ..screen import Show, ends_of, print_whole, progress, say_of
 from ..seed_campaign import BROKEN, HELD, INTERRUPTED
 from ..workers import Processes
