@@ -171,8 +171,8 @@ class Story:
         """Bring it to rest and clear it; the next order is done."""
         self.heard.all.clear()
         self.heard.until(lambda report: report.state is not MotionState.NO_LINK)
-        for word in StopMode.LATCH, StopMode.CLEAR:
-            self._say(word)
+        self._say(StopMode.LATCH)
+        self._say(StopMode.CLEAR)
         self.heard.until(is_heard)
         self.driver.send(order(self.device, "load", id="c2"))
         self.heard.until(lambda report: report.done == "c2")
@@ -181,7 +181,8 @@ class Story:
         """Say a word of stop again until it has left: a driver may find only now that its link is broken."""
 
         def left() -> bool:
-            self._interrupt()
+            if mode is StopMode.LATCH:
+                self._interrupt()
             try:
                 self.driver.send(Stop(id=f"s {mode.value}", robot=self.device.name, mode=mode))
             except NotSent:
