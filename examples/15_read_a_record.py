@@ -13,13 +13,13 @@ from real_start import ARBOLEDA, running
 
 from arboleda_class.lessons import spoken
 
-LOOK_S = 0.02  # the oven bakes for 0.4 s, at ten times its speed
+LOOK_S = 0.02
 TEST = re.compile(r"(def test_.*?)</pre>", re.DOTALL)
 
 
 def fail(state: Path) -> None:
     """Run a plant until its oven has jammed in a task, and end it."""
-    with running("workshop.yaml", state) as plant:
+    with running("workshop.yaml", state, rate=2) as plant:  # the oven bakes for 2 s
         task = plant.submit("bench bake shelf_1 4 #lot7")
         while plant.snapshot().cells[0].step != "oven bake 4":
             time.sleep(LOOK_S)

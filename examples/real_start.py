@@ -18,9 +18,9 @@ ENGLISH = {"ARBOLEDA_LANG": "en"}  # what the plant prints is read here, whateve
 
 
 @contextmanager
-def running(plant: str, state: Path) -> Iterator[Plant]:
-    """A plant of `plants/` on virtual devices, ten times as fast, that keeps its state in this folder."""
-    options = ("up", "--no-ros", "--rate", "10", "--state", state, "--plant", LESSONS / "plants" / plant)
+def running(plant: str, state: Path, rate: int = 10) -> Iterator[Plant]:
+    """A plant of `plants/` on virtual devices, so many times as fast, that keeps its state in this folder."""
+    options = ("up", "--no-ros", "--rate", rate, "--state", state, "--plant", LESSONS / "plants" / plant)
     command, spoken = [*ARBOLEDA, *map(str, options)], os.environ | ENGLISH
     up = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=spoken)
     try:
