@@ -100,7 +100,7 @@ def test_from_a_laptop_up_cells_twin_and_tree_are_on_one_screen(look: Open, widt
     root = "g.node[data-cell=sis_a][data-path=root]"
     for name in ("#stop", "#twin", "[data-cell=sis_a] > .tree-box", root):
         wait_for_sight(page, name)
-    assert page.inner_text("#twin-title") == "Twin of sis_a"
+    page.wait_for_function("document.getElementById('twin-title').textContent === 'Twin of sis_a'")
     assert page.inner_text("[data-cell=sis_a] .tree-box h2") == "Tree of sis_a"
     page.click("[data-choose=sis_b]")
     wait_for_sight(page, "g.node[data-cell=sis_b][data-path=root]")
