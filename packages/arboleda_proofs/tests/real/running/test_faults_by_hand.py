@@ -58,8 +58,8 @@ def test_a_fault_begins_shows_and_ends_by_command_and_in_the_drawer_of_the_page(
 
     page = browser.new_context().new_page()
     page.set_default_timeout(PATIENCE_MS)
-    held: list[Any] = []
-    page.route("**/faults.js", held.append)  # the menu is open before the script of its drawer has come
+    held: list[Any] = []  # the menu is open before the script of its drawer has come
+    page.route("**/faults.js", lambda route: held.append(route))
     page.goto(f"{address}/?lang=es")
     connected(page)
     operate(page, "sis_a")
